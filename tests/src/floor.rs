@@ -8,7 +8,7 @@ use arealight::{Light, LightShape, LightTable, PackedLights, Quality, SpecularLo
 use arealight_engine::host::{Buffer, Image, ImageDescription, Location, Usage};
 use arealight_oracle::material::{Material, Surface};
 use arealight_oracle::shading::{RelativeLight, ltc, shape_ltc_on, shape_seen_from};
-use arealight_vk::{Context, Resource, ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{Bound, Descriptors, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4, Vec3, Vec4};
 use std::sync::OnceLock;
@@ -140,21 +140,18 @@ impl<'a> Floor<'a> {
     /// Where the device fails.
     pub fn shade(
         &self,
-        context: &Context,
         options: ShadeOptions,
         tiles: bool,
-        (resources, frame, is_pushed): (&ShadeResources, &ShadeFrame, bool),
+        (resources, frame, descriptors): (&ShadeResources, &ShadeFrame, Descriptors),
     ) -> Vec<Vec4> {
         let (host, table) = (self.engine.host(), LightTable::ggx());
         let every_frame = TileOptions { least_quads: 0, ..TileOptions::default() };
         self.radiance.upload(&vec![BEFORE.to_array(); pixels().count()], Usage::COMPUTE_WRITE).unwrap();
         // SAFETY: Host::submit waits, and everything here is dropped before the engine.
         unsafe {
-            let pass = if tiles {
-                ShadePass::with_tiles(context, options, every_frame, table.size()).unwrap()
-            } else {
-                ShadePass::new(context, options).unwrap()
-            };
+            let (tiled, table_size) = (tiles.then_some(every_frame), table.size());
+            let info = ShadePassInfo { tiles: tiled, table_size, descriptors, ..options.into() };
+            let pass = ShadePass::new(self.engine.context(), info).unwrap();
             let lists = pass
                 .tile_memory(SIZE)
                 .map(|lists| host.buffer("lists", lists.size, lists.usage, Location::Device).unwrap());
@@ -162,9 +159,9 @@ impl<'a> Floor<'a> {
             let lobe_horizons = tiles.then(|| Resource::buffer(self.horizons.handle()));
             let resources = ShadeResources { tile_lists, lobe_horizons, ..*resources };
             let frame = ShadeFrame { tile_lists, ..*frame };
-            if is_pushed {
-                host.submit(|commands| pass.record_pushed(commands, &resources, None, &frame).unwrap())
-                    .unwrap();
+            if descriptors == Descriptors::Pushed {
+                let bound = Bound::Pushed { resources: &resources, host_set: None };
+                host.submit(|commands| pass.record(commands, bound, &frame).unwrap()).unwrap();
             } else {
                 let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
                 let set = pool.allocate(pass.set_layout()).unwrap();

@@ -6,7 +6,7 @@ use arealight::{Effects, Light, LightShape, PackedLights};
 use arealight_engine::EvalPoint;
 use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_oracle::material::{Material, Surface};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources};
 use ash::vk;
 use bytemuck::Pod;
 use glam::{DVec3, Mat4, Vec3, Vec4};
@@ -121,8 +121,9 @@ impl<'a> OnePixel<'a> {
         let [radiance, glossy] = [(); 2].map(|()| stored(self.engine, options.format));
         let (kept, own);
         let pass: &ShadePass = if let Some(module) = &self.module {
+            let info = ShadePassInfo { module: Some(module.clone()), ..options.into() };
             // SAFETY: Host::submit waits; the module is the test's.
-            own = unsafe { ShadePass::with_module(self.engine.context(), options, module.clone()) }.unwrap();
+            own = unsafe { ShadePass::new(self.engine.context(), info) }.unwrap();
             &own
         } else {
             kept = self.engine.shade_pass(options).unwrap();

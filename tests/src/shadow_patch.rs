@@ -7,8 +7,8 @@ use arealight::{Blockers, Light, PackedLights};
 use arealight_engine::host::{Buffer, Image, ImageDescription, Location, Usage};
 use arealight_oracle::material::Material;
 use arealight_vk::{
-    BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowFrame, ShadowOptions,
-    ShadowPass, ShadowResources,
+    BlockerResources, Bound, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources, ShadowFrame,
+    ShadowOptions, ShadowPass, ShadowPassInfo, ShadowResources,
 };
 use ash::vk;
 use glam::{DVec3, Vec3, Vec4};
@@ -70,7 +70,9 @@ impl<'a> PatchPasses<'a> {
         // SAFETY: Host::submit waits, and the passes are dropped before the engine.
         unsafe {
             let shade = ShadePass::new(engine.context(), options).unwrap();
-            let shadow = ShadowPass::new(engine.context(), options, shadows).unwrap();
+            let shadow =
+                ShadowPass::new(engine.context(), ShadowPassInfo { options, shadows, ..Default::default() })
+                    .unwrap();
             Self { engine, shade, shadow, options, blocker_set: None, visibility_set: None }
         }
     }
@@ -82,8 +84,9 @@ impl<'a> PatchPasses<'a> {
     pub fn with_tiles(engine: &'a TestEngine, options: ShadeOptions) -> Self {
         let passes = Self::new(engine, options, ShadowFilter::Off);
         let tiles = TileOptions { least_quads: 0, ..TileOptions::default() };
+        let info = ShadePassInfo { tiles: Some(tiles), table_size: engine.table_size(), ..options.into() };
         // SAFETY: As above.
-        let shade = unsafe { ShadePass::with_tiles(engine.context(), options, tiles, engine.table_size()) };
+        let shade = unsafe { ShadePass::new(engine.context(), info) };
         Self { shade: shade.unwrap(), ..passes }
     }
 
@@ -102,7 +105,8 @@ impl<'a> PatchPasses<'a> {
         // SAFETY: As above; the module is the test's, and the layout outlives the pass.
         unsafe {
             let shade = ShadePass::new(engine.context(), options).unwrap();
-            let shadow = ShadowPass::with_module(engine.context(), options, shadows, module, layout).unwrap();
+            let info = ShadowPassInfo { options, shadows, module: Some(module), host_set: Some(layout) };
+            let shadow = ShadowPass::new(engine.context(), info).unwrap();
             Self { engine, shade, shadow, options, blocker_set: None, visibility_set: None }
         }
     }
@@ -121,8 +125,9 @@ impl<'a> PatchPasses<'a> {
         layout: vk::DescriptorSetLayout,
     ) -> Self {
         let passes = Self::new(engine, options, ShadowFilter::Off);
+        let info = ShadePassInfo { module: Some(module), host_set: Some(layout), ..options.into() };
         // SAFETY: As above.
-        let shade = unsafe { ShadePass::with_module_and_set(engine.context(), options, module, layout) };
+        let shade = unsafe { ShadePass::new(engine.context(), info) };
         Self { shade: shade.unwrap(), ..passes }
     }
 }
@@ -222,13 +227,11 @@ impl ShadowPatch {
                 tile_lists,
                 ..ShadeFrame::default()
             };
-            host.submit(|commands| match visibility_set {
-                Some(own) => shade.record_with_set(commands, sets[0], *own, &frame).unwrap(),
-                None => shade.record(commands, sets[0], &frame).unwrap(),
-            })
-            .unwrap();
-            let frame = ShadowFrame { shade: &frame, host_set: *blocker_set, origin_shift: Vec3::ZERO };
-            host.submit(|commands| shadows.record(commands, sets[1], &of_shadows, &frame).unwrap()).unwrap();
+            let bound = |set, own: &Option<_>| own.map_or(Bound::Set(set), |own| Bound::Sets([set, own]));
+            let [of_shade, of_rays] = [bound(sets[0], visibility_set), bound(sets[1], blocker_set)];
+            host.submit(|commands| shade.record(commands, of_shade, &frame).unwrap()).unwrap();
+            let frame = ShadowFrame { shade: &frame, origin_shift: Vec3::ZERO };
+            host.submit(|commands| shadows.record(commands, of_rays, &of_shadows, &frame).unwrap()).unwrap();
         }
         let pixels = |image: &Image| {
             let texels: Vec<[f32; 4]> = image.download(Usage::COMPUTE_WRITE).unwrap();

@@ -1,9 +1,6 @@
 //! From the host's handles to a table on its device.
 
-use crate::constants::{
-    AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, AREALIGHT_DESCRIPTORS_PUSHED, AREALIGHT_DESCRIPTORS_SETS,
-    AREALIGHT_TABLE_RGBA16F, AREALIGHT_TABLE_RGBA32F,
-};
+use crate::constants::{AREALIGHT_TABLE_RGBA16F, AREALIGHT_TABLE_RGBA32F};
 use crate::failure::{ArealightResult, Failure, call};
 use crate::options::specular_lobes_of;
 use crate::types::{ArealightHost, ArealightMemory, ArealightTable, ArealightUpload};
@@ -11,14 +8,13 @@ use crate::{AREALIGHT_ABI_VERSION, arguments, handles, loader};
 use arealight::LightTable;
 use arealight::table::LobeHorizon;
 use arealight_table::TableFile;
-use arealight_vk::ash::{self, vk, vk::Handle as _};
+use arealight_vk::ash::vk::{self, Handle as _};
 use arealight_vk::{Context, TableFormat, TableImage};
 use std::ffi::c_void;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The library on a device of the host, with a light table.
 pub struct Arealight {
-    instance: ash::Instance,
     context: Context,
     format: TableFormat,
     table: LightTable,
@@ -34,21 +30,6 @@ struct Image {
 impl Arealight {
     pub(crate) fn context(&self) -> &Context {
         &self.context
-    }
-
-    /// The context of passes with one of AREALIGHT_DESCRIPTORS_*.
-    ///
-    /// # Safety
-    /// With AREALIGHT_DESCRIPTORS_PUSHED the device was made with `VK_KHR_push_descriptor`.
-    pub(crate) unsafe fn context_with(&self, descriptors: u32) -> Result<Context, Failure> {
-        let context = self.context.clone();
-        match descriptors {
-            AREALIGHT_DESCRIPTORS_SETS => Ok(context),
-            AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS => Ok(context.with_light_offsets()),
-            // SAFETY: the same contract; the instance is the device's.
-            AREALIGHT_DESCRIPTORS_PUSHED => Ok(unsafe { context.with_push_descriptors(&self.instance) }),
-            other => Err(Failure::argument(format!("options.descriptors: {other} must be from 0 to 2"))),
-        }
     }
 
     /// Nodes a side of the table.
@@ -112,7 +93,7 @@ pub unsafe extern "C" fn arealight_create(
             let context = Context::new(&instance, physical_device, &device)?
                 .with_pipeline_cache(vk::PipelineCache::from_raw(host.pipeline_cache));
             let image = Image { table: TableImage::new(&context, &table, format)?, memory: None };
-            Arealight { instance, context, format, table, image: Mutex::new(image) }
+            Arealight { context, format, table, image: Mutex::new(image) }
         };
         // SAFETY: as above.
         unsafe { arguments::write(out, handles::give(arealight), "out") }

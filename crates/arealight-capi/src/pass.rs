@@ -1,5 +1,8 @@
 //! The shade pass.
 
+use crate::constants::{
+    AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, AREALIGHT_DESCRIPTORS_PUSHED, AREALIGHT_DESCRIPTORS_SETS,
+};
 use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
 use crate::lights::read_summary;
@@ -9,9 +12,10 @@ use crate::types::{
     ArealightSetLayout, ArealightTileMemory, ArealightViewport,
 };
 use crate::{arguments, handles};
-use arealight::plan::{ShadeOptions, TileOptions};
 use arealight_vk::ash::vk::{self, Handle as _};
-use arealight_vk::{Context, Resource, ShadeFrame, ShadePass, ShadeResources, StencilTest, Viewport};
+use arealight_vk::{
+    Bound, Descriptors, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources, StencilTest, Viewport,
+};
 use glam::{Mat4, Vec3};
 use std::ffi::c_void;
 
@@ -38,14 +42,7 @@ pub unsafe extern "C" fn arealight_pass_create(
     out: *mut *mut ArealightPass,
 ) -> ArealightResult {
     // SAFETY: the same contract; the pass is the host's to destroy.
-    call(|| unsafe {
-        create(arealight, options, out, |arealight, context, options, tiles| {
-            Ok(match tiles {
-                None => ShadePass::new(context, options)?,
-                Some(tiles) => ShadePass::with_tiles(context, options, tiles, arealight.table_size())?,
-            })
-        })
-    })
+    call(|| unsafe { create(arealight, options, out, |_| Ok(None)) })
 }
 
 /// As arealight_pass_create, of a module that the host compiled from the sources of `arealight export`, for a
@@ -62,8 +59,8 @@ pub unsafe extern "C" fn arealight_pass_create_with_module(
     size: usize,
     out: *mut *mut ArealightPass,
 ) -> ArealightResult {
-    let make = |_: &Arealight, context: &Context, options, tiles: Option<TileOptions>| {
-        if tiles.is_some() {
+    let module = |info: &ShadePassInfo| {
+        if info.tiles.is_some() {
             return Err(Failure::argument(
                 "options.tile_capacity: must be 0, since tiles are not classified by a G-buffer of the \
                 host's own",
@@ -74,11 +71,10 @@ pub unsafe extern "C" fn arealight_pass_create_with_module(
         }
         // SAFETY: the same contract, here and below.
         let words = unsafe { arguments::array(words, size / 4, "words") }?;
-        // SAFETY: as above.
-        Ok(unsafe { ShadePass::with_module(context, options, words.to_vec()) }?)
+        Ok(Some(words.to_vec()))
     };
     // SAFETY: the same contract; the pass is the host's to destroy.
-    call(|| unsafe { create(arealight, options, out, make) })
+    call(|| unsafe { create(arealight, options, out, module) })
 }
 
 /// # Safety
@@ -87,16 +83,28 @@ unsafe fn create(
     arealight: *const Arealight,
     options: *const ArealightPassOptions,
     out: *mut *mut ArealightPass,
-    make: impl FnOnce(&Arealight, &Context, ShadeOptions, Option<TileOptions>) -> Result<ShadePass, Failure>,
+    module: impl FnOnce(&ShadePassInfo) -> Result<Option<Vec<u32>>, Failure>,
 ) -> Result<(), Failure> {
     // SAFETY: the same contract, here and below.
     let (arealight, options) = unsafe {
         arguments::write(out, std::ptr::null_mut(), "out")?;
         (handles::borrow(arealight, "arealight")?, arguments::read(options, "options")?)
     };
-    // SAFETY: the host says that its device has the extension.
-    let context = unsafe { arealight.context_with(options.descriptors) }?;
-    let pass = make(arealight, &context, shade_options(options)?, tile_options(options))?;
+    let descriptors = match options.descriptors {
+        AREALIGHT_DESCRIPTORS_SETS => Descriptors::Sets,
+        AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS => Descriptors::LightOffsets,
+        AREALIGHT_DESCRIPTORS_PUSHED => Descriptors::Pushed,
+        other => return Err(Failure::argument(format!("options.descriptors: {other} must be from 0 to 2"))),
+    };
+    let info = ShadePassInfo {
+        tiles: tile_options(options),
+        table_size: arealight.table_size(),
+        descriptors,
+        ..shade_options(options)?.into()
+    };
+    let info = ShadePassInfo { module: module(&info)?, ..info };
+    // SAFETY: the host vouches for the module, and says that its device has the extension.
+    let pass = unsafe { ShadePass::new(arealight.context(), info) }?;
     // SAFETY: as above.
     unsafe { arguments::write(out, handles::give(ArealightPass { pass }), "out") }
 }
@@ -322,8 +330,9 @@ pub unsafe extern "C" fn arealight_pass_record_pushed(
         arguments::refuse_null([(command_buffer.is_null(), "command_buffer")])?;
         let resources = resources_of(pass, arealight, resources)?;
         let command_buffer = vk::CommandBuffer::from_raw(command_buffer as u64);
+        let bound = Bound::Pushed { resources: &resources, host_set: None };
         // SAFETY: the caller vouches for the command buffer and the resources.
-        Ok(unsafe { pass.record_pushed(command_buffer, &resources, None, &frame) }?)
+        Ok(unsafe { pass.record(command_buffer, bound, &frame) }?)
     })
 }
 

@@ -13,7 +13,9 @@ use crate::{arguments, handles};
 use arealight::plan::{self, Output, ShadowFilter, ShadowHistory};
 use arealight::{BlockerError, Blockers};
 use arealight_vk::ash::vk::{self, Handle as _};
-use arealight_vk::{BlockerResources, ShadowFrame, ShadowOptions, ShadowPass, ShadowResources};
+use arealight_vk::{
+    BlockerResources, Bound, ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo, ShadowResources,
+};
 use bytemuck::cast_slice;
 use glam::Vec3;
 use std::ffi::c_void;
@@ -119,7 +121,8 @@ pub unsafe extern "C" fn arealight_shadow_pass_create(
     // SAFETY: the same contract; the pass is the host's to destroy.
     call(|| unsafe {
         create(arealight, options, shadows, out, |arealight, options, shadows| {
-            Ok(ShadowPass::new(arealight.context(), options, shadows)?)
+            let info = ShadowPassInfo { options, shadows, ..ShadowPassInfo::default() };
+            Ok(ShadowPass::new(arealight.context(), info)?)
         })
     })
 }
@@ -151,7 +154,8 @@ pub unsafe extern "C" fn arealight_shadow_pass_create_with_module(
             }
             let words = arguments::array(words, size / 4, "words")?.to_vec();
             let layout = vk::DescriptorSetLayout::from_raw(host_set_layout);
-            Ok(ShadowPass::with_module(arealight.context(), options, shadows, words, layout)?)
+            let info = ShadowPassInfo { options, shadows, module: Some(words), host_set: Some(layout) };
+            Ok(ShadowPass::new(arealight.context(), info)?)
         })
     })
 }
@@ -331,15 +335,15 @@ pub unsafe extern "C" fn arealight_shadow_pass_record(
         arguments::refuse_reserved(given.reserved, "frame.reserved")?;
         // SAFETY: as above.
         let shade = unsafe { read_frame(arguments::read(given.frame, "frame.frame")?) }?;
-        let frame = ShadowFrame {
-            shade: &shade,
-            host_set: (given.host_set != 0).then(|| vk::DescriptorSet::from_raw(given.host_set)),
-            origin_shift: Vec3::from_array(given.origin_shift),
-        };
+        let frame = ShadowFrame { shade: &shade, origin_shift: Vec3::from_array(given.origin_shift) };
         let (commands, set) =
             (vk::CommandBuffer::from_raw(command_buffer as u64), vk::DescriptorSet::from_raw(set));
-        // SAFETY: the caller vouches for the command buffer and the set.
-        Ok(unsafe { pass.record(commands, set, &read_shadow_resources(resources), &frame) }?)
+        let bound = match given.host_set {
+            0 => Bound::Set(set),
+            host_set => Bound::Sets([set, vk::DescriptorSet::from_raw(host_set)]),
+        };
+        // SAFETY: the caller vouches for the command buffer and the sets.
+        Ok(unsafe { pass.record(commands, bound, &read_shadow_resources(resources), &frame) }?)
     })
 }
 

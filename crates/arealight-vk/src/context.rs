@@ -1,14 +1,15 @@
 //! The host's device, and the pipeline cache it lends.
 
 use crate::debug_names::DebugNames;
-use crate::error::{Error, VulkanCall};
-use crate::light_textures::{FORMAT, USAGE};
+use crate::error::Error;
+use crate::limits::{DescriptorLimits, ImageLimits, light_texture_limits};
 use crate::written_sets::WrittenSets;
 use ash::vk;
 
 /// The recorder's view of the host's device, from which passes are made. Cheap to clone.
 #[derive(Clone)]
 pub struct Context {
+    instance: ash::Instance,
     pub(crate) device: ash::Device,
     pub(crate) pipeline_cache: vk::PipelineCache,
     pub(crate) max_group_count: [u32; 3],
@@ -19,46 +20,6 @@ pub struct Context {
     pub(crate) whole_modules: bool,
     pub(crate) names: DebugNames,
     pub(crate) written_sets: WrittenSets,
-    pub(crate) descriptors: Descriptors,
-}
-
-/// How shade passes get at the host's resources.
-#[derive(Clone, Default)]
-pub(crate) enum Descriptors {
-    /// By descriptor sets that the host allocates.
-    #[default]
-    Sets,
-    /// Likewise, with an offset for each buffer of lights when they are bound.
-    LightOffsets,
-    /// By what is pushed when commands are recorded.
-    Pushed(ash::khr::push_descriptor::Device),
-}
-
-impl std::fmt::Debug for Descriptors {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Sets => "Sets",
-            Self::LightOffsets => "LightOffsets",
-            Self::Pushed(_) => "Pushed",
-        })
-    }
-}
-
-/// The largest image of a kind.
-#[derive(Clone, Copy)]
-pub(crate) struct ImageLimits {
-    pub(crate) extent: [u32; 2],
-    pub(crate) layers: u32,
-}
-
-/// How many descriptors of a kind a compute stage may use, and where they may begin.
-#[derive(Clone, Copy)]
-pub(crate) struct DescriptorLimits {
-    pub(crate) sampled_images: u32,
-    pub(crate) storage_images: u32,
-    pub(crate) storage_buffers: u32,
-    /// `minStorageBufferOffsetAlignment`.
-    pub(crate) storage_buffer_alignment: vk::DeviceSize,
 }
 
 impl std::fmt::Debug for Context {
@@ -93,6 +54,7 @@ impl Context {
             return Err(Error::MissingFeature { feature: "Vulkan 1.1", needed_by: "every kernel" });
         }
         Ok(Self {
+            instance: instance.clone(),
             device: device.clone(),
             pipeline_cache: vk::PipelineCache::null(),
             max_group_count: properties.limits.max_compute_work_group_count,
@@ -106,7 +68,6 @@ impl Context {
             whole_modules: false,
             names: DebugNames::default(),
             written_sets: WrittenSets::default(),
-            descriptors: Descriptors::Sets,
         })
     }
 
@@ -141,27 +102,9 @@ impl Context {
         self
     }
 
-    /// Has shade passes take their resources when they are recorded, by
-    /// [`ShadePass::record_pushed`](crate::ShadePass::record_pushed), in the place of descriptor sets.
-    ///
-    /// # Safety
-    /// The instance is the device's, and the device was made with `VK_KHR_push_descriptor`.
-    #[must_use = "the context is returned"]
-    pub unsafe fn with_push_descriptors(mut self, instance: &ash::Instance) -> Self {
-        let functions = ash::khr::push_descriptor::Device::new(instance, &self.device);
-        self.descriptors = Descriptors::Pushed(functions);
-        self
-    }
-
-    /// Has the buffers of lights, their vertices and shapes in the sets of shade passes be dynamic ones
-    /// (`STORAGE_BUFFER_DYNAMIC`), whose offsets each frame says:
-    /// [`ShadeFrame::light_offsets`](crate::ShadeFrame::light_offsets), for rings of buffers. Sets are
-    /// written with the range of a frame. Shadow passes have plain buffers, and a set for each part of a
-    /// ring.
-    #[must_use = "the context is returned"]
-    pub fn with_light_offsets(mut self) -> Self {
-        self.descriptors = Descriptors::LightOffsets;
-        self
+    /// The functions of `VK_KHR_push_descriptor`, with which the device was made.
+    pub(crate) fn push_descriptors(&self) -> ash::khr::push_descriptor::Device {
+        ash::khr::push_descriptor::Device::new(&self.instance, &self.device)
     }
 
     /// The device's function table.
@@ -183,35 +126,5 @@ impl Context {
         let flags = vk::DependencyFlags::empty();
         // SAFETY: the same contract.
         unsafe { self.device.cmd_pipeline_barrier(command_buffer, before, after, flags, &barrier, &[], &[]) };
-    }
-}
-
-/// The largest light textures of the device.
-fn light_texture_limits(
-    instance: &ash::Instance,
-    physical_device: vk::PhysicalDevice,
-) -> Result<Option<ImageLimits>, Error> {
-    let needed = vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR | vk::FormatFeatureFlags::STORAGE_IMAGE;
-    // SAFETY: the handles are valid by the contract of Context::new; so for both calls.
-    let (features, image) = unsafe {
-        let format = instance.get_physical_device_format_properties(physical_device, FORMAT);
-        let image = instance.get_physical_device_image_format_properties(
-            physical_device,
-            FORMAT,
-            vk::ImageType::TYPE_2D,
-            vk::ImageTiling::OPTIMAL,
-            USAGE,
-            vk::ImageCreateFlags::empty(),
-        );
-        (format.optimal_tiling_features, image)
-    };
-    match image {
-        Err(vk::Result::ERROR_FORMAT_NOT_SUPPORTED) => Ok(None),
-        _ if !features.contains(needed) => Ok(None),
-        image => {
-            let limits = image.call("vkGetPhysicalDeviceImageFormatProperties")?;
-            let extent = [limits.max_extent.width, limits.max_extent.height];
-            Ok(Some(ImageLimits { extent, layers: limits.max_array_layers }))
-        }
     }
 }

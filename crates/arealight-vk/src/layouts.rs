@@ -1,8 +1,8 @@
 //! The layout of a kernel's descriptor sets, and how they are written.
 
-use crate::context::{Context, Descriptors};
+use crate::context::Context;
 use crate::error::{Error, VulkanCall};
-use crate::pass::Resource;
+use crate::resource::Resource;
 use arealight::kernels::{Binding, BindingKind, Kernel, LIGHT_VERTICES, LIGHTS, SHAPES};
 use ash::vk;
 use std::sync::Arc;
@@ -20,8 +20,23 @@ pub fn filtered_image_sampler() -> vk::SamplerCreateInfo<'static> {
         .max_lod(vk::LOD_CLAMP_NONE)
 }
 
+/// How shade passes get at the host's resources.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Descriptors {
+    /// By descriptor sets that the host allocates.
+    #[default]
+    Sets,
+    /// By such sets, in which the buffers of lights, their vertices and shapes are dynamic ones
+    /// (`STORAGE_BUFFER_DYNAMIC`): each frame says their offsets,
+    /// [`ShadeFrame::light_offsets`](crate::ShadeFrame::light_offsets), for rings of buffers. Sets are
+    /// written with the range of a frame.
+    LightOffsets,
+    /// By [`Bound::Pushed`](crate::Bound::Pushed), when commands are recorded. The device was made with
+    /// `VK_KHR_push_descriptor`.
+    Pushed,
+}
+
 /// What every pipeline of a kernel has in common: a descriptor set is for all that share it.
-#[derive(Debug)]
 pub(crate) struct Layouts {
     context: Context,
     kernel: &'static Kernel,
@@ -31,9 +46,16 @@ pub(crate) struct Layouts {
     host_set: Option<vk::DescriptorSetLayout>,
     /// How set 0 gets at resources.
     descriptors: Descriptors,
+    push: Option<ash::khr::push_descriptor::Device>,
     sampler: vk::Sampler,
     set_layout: vk::DescriptorSetLayout,
     pipeline_layout: vk::PipelineLayout,
+}
+
+impl std::fmt::Debug for Layouts {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Layouts").field("kernel", &self.kernel.name).finish_non_exhaustive()
+    }
 }
 
 impl Layouts {
@@ -63,6 +85,7 @@ impl Layouts {
             bindings,
             host_set,
             descriptors,
+            push: (descriptors == Descriptors::Pushed).then(|| context.push_descriptors()),
             sampler: vk::Sampler::null(),
             set_layout: vk::DescriptorSetLayout::null(),
             pipeline_layout: vk::PipelineLayout::null(),
@@ -101,7 +124,7 @@ impl Layouts {
             })
             .collect();
         let flags = match self.descriptors {
-            Descriptors::Pushed(_) => vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR,
+            Descriptors::Pushed => vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR,
             Descriptors::Sets | Descriptors::LightOffsets => vk::DescriptorSetLayoutCreateFlags::empty(),
         };
         let info = vk::DescriptorSetLayoutCreateInfo::default().flags(flags).bindings(&bindings);
@@ -170,7 +193,7 @@ impl Layouts {
     }
 
     fn descriptor_type(&self, binding: &Binding) -> vk::DescriptorType {
-        let is_dynamic = matches!(self.descriptors, Descriptors::LightOffsets);
+        let is_dynamic = self.descriptors == Descriptors::LightOffsets;
         match binding.kind {
             BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
             BindingKind::FilteredImage => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
@@ -279,7 +302,7 @@ impl Layouts {
         light_offsets: [u32; 3],
     ) {
         let offsets: &[u32] =
-            if matches!(self.descriptors, Descriptors::LightOffsets) { &light_offsets } else { &[] };
+            if self.descriptors == Descriptors::LightOffsets { &light_offsets } else { &[] };
         let (point, layout) = (vk::PipelineBindPoint::COMPUTE, self.pipeline_layout);
         // SAFETY: the same contract.
         unsafe {
@@ -298,7 +321,7 @@ impl Layouts {
         resources: &[Resource],
         host_set: Option<vk::DescriptorSet>,
     ) {
-        let Descriptors::Pushed(functions) = &self.descriptors else { return };
+        let Some(functions) = &self.push else { return };
         let (point, layout) = (vk::PipelineBindPoint::COMPUTE, self.pipeline_layout);
         self.with_writes(vk::DescriptorSet::null(), resources, |writes| {
             // SAFETY: the same contract.
@@ -314,36 +337,28 @@ impl Layouts {
 
     /// Refuses sets where resources are pushed.
     pub(crate) fn check_takes_sets(&self) -> Result<(), Error> {
-        match self.descriptors {
-            Descriptors::Pushed(_) => Err(Error::InvalidArgument {
-                field: "set",
-                message: "is given, but passes of a context with push descriptors take resources: \
-                ShadePass::record_pushed"
-                    .into(),
-            }),
-            Descriptors::Sets | Descriptors::LightOffsets => Ok(()),
+        if self.push.is_none() {
+            return Ok(());
         }
+        let message = "is given, but the pass takes resources: Bound::Pushed".into();
+        Err(Error::InvalidArgument { field: "set", message })
     }
 
     /// Refuses pushed resources where there are sets.
     pub(crate) fn check_takes_resources(&self) -> Result<(), Error> {
-        match self.descriptors {
-            Descriptors::Pushed(_) => Ok(()),
-            Descriptors::Sets | Descriptors::LightOffsets => Err(Error::InvalidArgument {
-                field: "resources",
-                message:
-                    "are given, but the pass was made of a context without Context::with_push_descriptors"
-                        .into(),
-            }),
+        if self.push.is_some() {
+            return Ok(());
         }
+        let message = "are given, but the pass takes sets: see ShadePassInfo::descriptors".into();
+        Err(Error::InvalidArgument { field: "resources", message })
     }
 
     /// Whether offsets can be bound.
     pub(crate) fn check_light_offsets(&self, offsets: [u32; 3]) -> Result<(), Error> {
         let wrong = |message: String| Err(Error::InvalidArgument { field: "light_offsets", message });
-        if !matches!(self.descriptors, Descriptors::LightOffsets) && offsets != [0; 3] {
+        if self.descriptors != Descriptors::LightOffsets && offsets != [0; 3] {
             return wrong(
-                "are given, but the pass was made of a context without Context::with_light_offsets".into(),
+                "are given, but ShadePassInfo::descriptors are not Descriptors::LightOffsets".into(),
             );
         }
         let alignment = self.context.limits.storage_buffer_alignment;

@@ -11,7 +11,7 @@
 //! | step | by |
 //! |---|---|
 //! | from your handles | [`Context::new`], [`Context::with_pipeline_cache`] |
-//! | a pass for your G-buffer | [`ShadePass::new`]; for many lights [`ShadePass::with_tiles`] |
+//! | a pass for your G-buffer | [`ShadePass::new`]; for many lights with [`ShadePassInfo::tiles`] |
 //! | the table, in memory of yours | `arealight::LightTable::ggx`, [`TableImage`] |
 //! | your images and buffers | [`ShadeResources`], [`ShadePass::write_set`] |
 //! | your barriers | [`ShadePass::accesses`] |
@@ -46,14 +46,17 @@ mod context;
 mod debug_names;
 mod error;
 mod formats;
+mod frame;
 mod layouts;
 mod light_textures;
+mod limits;
 #[cfg(feature = "gpu-allocator")]
 mod memory;
 mod module;
 mod pass;
 mod pipelines;
 mod prune;
+mod resource;
 mod shade;
 mod shadows;
 mod table_image;
@@ -61,19 +64,23 @@ mod tiles;
 mod view;
 mod written_sets;
 
+pub use arealight;
 pub use ash;
 pub use context::Context;
 pub use error::Error;
 pub use formats::ShadeFormats;
-pub use layouts::filtered_image_sampler;
+pub use frame::{ShadeFrame, StencilTest, Viewport};
+pub use layouts::{Descriptors, filtered_image_sampler};
 pub use light_textures::{LightTextures, TextureUpdate};
-pub use pass::{ComputePass, Resource};
+pub use pass::ComputePass;
 pub use prune::{freeze, prune};
-pub use shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources, StencilTest};
-pub use shadows::{BlockerResources, ShadowFrame, ShadowOptions, ShadowPass, ShadowResources, ShadowStage};
+pub use resource::Resource;
+pub use shade::{Bound, ResourceAccess, ShadePass, ShadePassInfo, ShadeResources};
+pub use shadows::{
+    BlockerResources, ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo, ShadowResources, ShadowStage,
+};
 pub use table_image::{TableFormat, TableImage};
 pub use tiles::TileMemory;
-pub use view::Viewport;
 
 #[cfg(test)]
 mod tests {

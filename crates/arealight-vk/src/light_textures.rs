@@ -2,7 +2,9 @@
 
 use crate::context::Context;
 use crate::error::{Error, VulkanCall};
-use crate::pass::{ComputePass, Resource};
+use crate::limits::{TEXTURE_FORMAT as FORMAT, TEXTURE_USAGE as USAGE};
+use crate::pass::ComputePass;
+use crate::resource::Resource;
 use arealight::gpu::TextureLoadConstants;
 use arealight::kernels::{TEXTURE_BLUR, TEXTURE_LOAD, constant};
 use arealight::pyramid::MOST_TAPS;
@@ -10,17 +12,6 @@ use arealight::{PyramidSize, TexturePart, plan};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
-
-/// The format of the light textures, which every Vulkan device filters and stores to.
-pub(crate) const FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
-
-/// How the image is used: shading samples it, filtering stores to it, a clear and tests copy.
-pub(crate) const USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
-    vk::ImageUsageFlags::SAMPLED.as_raw()
-        | vk::ImageUsageFlags::STORAGE.as_raw()
-        | vk::ImageUsageFlags::TRANSFER_SRC.as_raw()
-        | vk::ImageUsageFlags::TRANSFER_DST.as_raw(),
-);
 
 /// The one layout of the image, from [`LightTextures::record_clear`] on.
 ///

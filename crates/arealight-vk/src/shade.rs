@@ -1,107 +1,78 @@
 //! The shade pass: a G-buffer, lights and the table go in, radiance comes out.
 
+mod bound;
 mod resources;
 
+pub use bound::Bound;
 pub(crate) use resources::accesses_of;
 pub use resources::{ResourceAccess, ShadeResources};
 
 use crate::context::Context;
 use crate::error::Error;
-use crate::layouts::Layouts;
+use crate::frame::{GROUP_SIDE, ShadeFrame};
+use crate::layouts::{Descriptors, Layouts};
 use crate::module::check_module;
-use crate::pass::Resource;
 use crate::pipelines::Pipelines;
+use crate::resource::Resource;
 use crate::tiles::{TileMemory, TiledFrame, Tiles};
-use crate::view::{Viewport, check_view, view_of};
+use crate::view::{check_view, view_of};
 use arealight::gpu::ShadeConstants;
-use arealight::kernels::{CLASSIFY, FRAME_BINDINGS, SHADE, read_samples, store_to};
+use arealight::kernels::{CLASSIFY, FRAME_BINDINGS, Kernel, SHADE, read_samples, store_to};
 use arealight::plan::{self, Output, ShadeOptions, TileOptions};
 use arealight::{Effects, LightSummary};
 use ash::vk;
-use glam::{Mat4, Vec3};
 use resources::{LIGHT_COUNTS, LOBE_HORIZONS, STENCIL, TILE_LISTS, needed};
 use std::ops::Range;
 
-/// What differs from frame to frame.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ShadeFrame {
-    /// How many pixels are shaded, from the corner x = y = 0 of the radiance images on, or from `offset`. The
-    /// images may be larger. The G-buffer's images have a texel for each pixel, or
-    /// [`ShadeOptions::texels_per_pixel`] to a side.
-    pub size: [u32; 2],
-    /// With [`ShadeOptions::rectangle`], the first pixel that is shaded; else zero. In the G-buffer it has
-    /// the same place, times [`ShadeOptions::texels_per_pixel`].
-    pub offset: [u32; 2],
-    /// The viewport that drew the G-buffer. Its height is negative where y is up in clip space, as in hosts
-    /// that come from Direct3D, Metal or WebGPU. None: just the texels of `size` and `offset`, y down, depth
-    /// from 0 to 1. Only positions from depth, and a shadow's history, depend on it.
-    pub viewport: Option<Viewport>,
-    /// The camera's position relative to the origin that lights and positions are packed with; with
-    /// [`ShadeOptions::orthographic`] the direction to it, of any length but zero. With shadow rays the
-    /// length is that at which a perspective camera would stand that sees as much: what counts as one plane
-    /// depends on it.
-    pub camera: Vec3,
-    /// The inverse of (projection × view), from clip space to positions relative to the origin: of the matrix
-    /// that drew the depth, jitter included. Needed with [`ShadeOptions::from_depth`], else ignored.
-    pub position_from_clip: Option<Mat4>,
-    /// [`PackedLights::summary`](arealight::PackedLights::summary) of the lights in the set's buffers; with
-    /// [`ShadeOptions::light_counts`] the most that there may be.
-    pub lights: LightSummary,
-    /// With tiles, [`ShadeResources::tile_lists`] of the set: dispatches are read from it. Passes without
-    /// tiles do not use it.
-    pub tile_lists: Option<Resource>,
-    /// With [`ShadeOptions::shadow_rays`], of the random numbers that rays are drawn with: one more in each
-    /// frame. Else ignored.
-    pub seed: u32,
-    /// The rows of pixels that this record shades, from the first to before the second, of those that `size`
-    /// says; None: all. Both are multiples of 8, or the second is the last row's end. A frame of more work
-    /// than a driver's watchdog allows is recorded and submitted by [`ShadeFrame::parts`]. The picture is the
-    /// same to the bit.
-    pub rows: Option<[u32; 2]>,
-    /// With [`ShadeOptions::stencil`], which pixels are shaded. Else ignored.
-    pub stencil: StencilTest,
-    /// With [`Context::with_light_offsets`], where the frame's lights, vertices and shapes begin, in bytes
-    /// after what the set was written with. Else zero.
-    pub light_offsets: [u32; 3],
+/// The options, tiles and modules of a shade pass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShadePassInfo {
+    /// How the host's surfaces are stored and shaded.
+    pub options: ShadeOptions,
+    /// With tiles (docs/tiles.md) [`ShadeResources::lobe_horizons`] and `tile_lists` are needed.
+    pub tiles: Option<TileOptions>,
+    /// Nodes a side of the table that will be bound, [`arealight::LightTable::size`]; by default those of the
+    /// built-in one. Only tiles depend on it.
+    pub table_size: u32,
+    /// A module that the host compiled from the kernel's sources, for a G-buffer of its own
+    /// (docs/embed-glsl.md), in which case [`ShadeOptions::g_buffer`] does not count; or one that asks the
+    /// host what part of each light arrives (docs/shadows.md). By default the kernel's own.
+    pub module: Option<Vec<u32>>,
+    /// The module of the kernel `classify` that goes with `module`, with tiles.
+    pub tile_module: Option<Vec<u32>>,
+    /// The layout of descriptor set 1, where what a module of the host's reads is.
+    pub host_set: Option<vk::DescriptorSetLayout>,
+    /// How the pass gets at its resources.
+    pub descriptors: Descriptors,
 }
 
-/// Shades pixels whose stencil equals the reference in the bits of the mask: `VK_COMPARE_OP_EQUAL`. By
-/// default all are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct StencilTest {
-    /// The bits that are compared.
-    pub compare_mask: u8,
-    /// What they must be.
-    pub reference: u8,
-}
-
-impl ShadeFrame {
-    /// The frame in parts of whole rows of workgroups, each with at most `most` pairs of a pixel and a light;
-    /// the smallest part is a row of workgroups (8 rows of pixels). docs/gpu.md has the cost of a light; 2^24
-    /// pairs take less than two seconds on a device that does ten million a second. Tiles leave out pairs
-    /// that are counted here.
-    pub fn parts(&self, most: u64) -> impl Iterator<Item = Self> + use<> {
-        let frame = *self;
-        let [first, end] = frame.rows.unwrap_or([0, frame.size[1]]);
-        let lights = u64::from(frame.lights.light_count) + u64::from(frame.lights.shape_count);
-        let pairs_of_group_row = u64::from(GROUP_SIDE) * u64::from(frame.size[0]) * lights.max(1);
-        let group_rows = (most / pairs_of_group_row.max(1)).clamp(1, u64::from(u32::MAX / GROUP_SIDE));
-        let step = group_rows as u32 * GROUP_SIDE;
-        (first..end)
-            .step_by(step as usize)
-            .map(move |row| Self { rows: Some([row, row.saturating_add(step).min(end)]), ..frame })
+impl Default for ShadePassInfo {
+    /// [`ShadeOptions::default`], the kernel's own module without tiles, and descriptor sets.
+    fn default() -> Self {
+        Self {
+            options: ShadeOptions::default(),
+            tiles: None,
+            table_size: 64,
+            module: None,
+            tile_module: None,
+            host_set: None,
+            descriptors: Descriptors::Sets,
+        }
     }
 }
 
-/// Rows of pixels of a workgroup, of the kernels shade and classify alike.
-const GROUP_SIDE: u32 = arealight::tiles::SIDE;
+impl From<ShadeOptions> for ShadePassInfo {
+    fn from(options: ShadeOptions) -> Self {
+        Self { options, ..Self::default() }
+    }
+}
 
 /// The shade kernel, specialised for a host's surfaces and a quality, for every kind of light.
 ///
 /// A frame's pipeline has what its lights and the surfaces need, and nothing else.
 /// It is made when the first such frame is recorded, or ahead by [`ShadePass::prepare`], and kept.
 ///
-/// With tiles ([`ShadePass::with_tiles`]) a dispatch first lists the lights that contribute to each tile of 8
+/// With [`ShadePassInfo::tiles`] a dispatch first lists the lights that contribute to each tile of 8
 /// × 8 pixels, and tiles of quads alone run less code than others. The picture is the same but for lights
 /// that are left out, by [`TileOptions`].
 #[derive(Debug)]
@@ -112,103 +83,43 @@ pub struct ShadePass {
 }
 
 impl ShadePass {
-    /// Creates the set and pipeline layouts.
+    /// Creates the set and pipeline layouts, from a [`ShadePassInfo`] or just [`ShadeOptions`].
     ///
     /// # Safety
-    /// As [`crate::ComputePass::new`]: drop the pass when no recorded use of it is pending, before the device
-    /// goes.
+    /// - As [`crate::ComputePass::new`]: drop the pass when no recorded use of it is pending, before the
+    ///   device goes.
+    /// - Modules are valid SPIR-V of this version's kernels; [`ShadePassInfo::host_set`] is a layout of the
+    ///   device, valid as long as the pass. With [`Descriptors::Pushed`] the device was made with
+    ///   `VK_KHR_push_descriptor`.
     ///
     /// # Errors
-    /// [`Error::Vulkan`] where a call fails.
-    pub unsafe fn new(context: &Context, options: ShadeOptions) -> Result<Self, Error> {
-        // SAFETY: the same contract; the module is the kernel's.
-        unsafe { Self::of_module(context, options, SHADE.words(), None) }
-    }
-
-    /// As [`ShadePass::new`], with tiles (docs/tiles.md): [`ShadeResources::lobe_horizons`] and `tile_lists`
-    /// are needed then. `table_size` is how many nodes a side the table has that will be bound,
-    /// [`arealight::LightTable::size`].
-    ///
-    /// # Safety
-    /// As [`ShadePass::new`].
-    ///
-    /// # Errors
-    /// As [`ShadePass::new`]; [`Error::InvalidArgument`] names the field of `tiles` that is out of range;
-    /// [`Error::MissingFeature`] where the device has too few storage buffers for a stage.
-    pub unsafe fn with_tiles(
-        context: &Context,
-        options: ShadeOptions,
-        tiles: TileOptions,
-        table_size: u32,
-    ) -> Result<Self, Error> {
+    /// [`Error::InvalidArgument`] names the field that is out of range, or a module without the kernel's
+    /// entry point and bindings; [`Error::MissingFeature`] where the device has too few storage buffers for a
+    /// stage, which tiles alone can need; [`Error::Vulkan`] where a call fails.
+    pub unsafe fn new(context: &Context, info: impl Into<ShadePassInfo>) -> Result<Self, Error> {
+        let ShadePassInfo { options, tiles, table_size, module, tile_module, host_set, descriptors } =
+            info.into();
         check_options(options)?;
-        // SAFETY: the same contract; the modules are the kernels'.
-        unsafe {
-            let descriptors = context.descriptors.clone();
-            let layouts = Layouts::with(context, &SHADE, SHADE.bindings, (descriptors, None))?;
-            let tiles = Tiles::new(&layouts, options, tiles, table_size)?;
-            let pipelines = Pipelines::new(layouts, &SHADE, SHADE.words_for(options.format, options.samples));
-            Ok(Self { pipelines, tiles: Some(tiles), options })
-        }
-    }
-
-    /// As [`ShadePass::new`], of a module that the host compiled from the kernel's sources, for a G-buffer of
-    /// its own (docs/embed-glsl.md): [`ShadeOptions::g_buffer`] does not count then.
-    ///
-    /// # Safety
-    /// As [`ShadePass::new`]. The module is valid SPIR-V of this version's `shade.comp`.
-    ///
-    /// # Errors
-    /// As [`ShadePass::new`]; [`Error::InvalidArgument`] if it is not a module with the kernel's
-    /// entry point and bindings.
-    pub unsafe fn with_module(
-        context: &Context,
-        options: ShadeOptions,
-        module: Vec<u32>,
-    ) -> Result<Self, Error> {
-        check_module(&module, &SHADE)?;
-        // SAFETY: the same contract.
-        unsafe { Self::of_module(context, options, module, None) }
-    }
-
-    /// As [`ShadePass::with_module`], of a module that asks the host what part of each light arrives
-    /// (docs/shadows.md): what it reads is in descriptor set 1, of this layout, which
-    /// [`ShadePass::record_with_set`] binds.
-    ///
-    /// # Safety
-    /// As [`ShadePass::with_module`]; `host_set` is a layout of the device, valid as long as the pass.
-    ///
-    /// # Errors
-    /// As [`ShadePass::with_module`].
-    pub unsafe fn with_module_and_set(
-        context: &Context,
-        options: ShadeOptions,
-        module: Vec<u32>,
-        host_set: vk::DescriptorSetLayout,
-    ) -> Result<Self, Error> {
-        check_module(&module, &SHADE)?;
-        // SAFETY: the same contract.
-        unsafe { Self::of_module(context, options, module, Some(host_set)) }
-    }
-
-    /// # Safety
-    /// As [`ShadePass::with_module_and_set`].
-    unsafe fn of_module(
-        context: &Context,
-        options: ShadeOptions,
-        mut module: Vec<u32>,
-        host_set: Option<vk::DescriptorSetLayout>,
-    ) -> Result<Self, Error> {
-        check_options(options)?;
-        store_to(options.format, &mut module);
-        read_samples(options.samples, &mut module);
+        let shade = module_of(&SHADE, options, module.as_deref())?;
         // Frames without tiles have none of their bindings
         let used = FRAME_BINDINGS + usize::from(options.light_counts);
-        let bindings = if context.whole_modules { SHADE.bindings } else { &SHADE.bindings[..used] };
-        // SAFETY: the same contract.
+        let is_whole = tiles.is_some() || context.whole_modules;
+        let bindings = if is_whole { SHADE.bindings } else { &SHADE.bindings[..used] };
+        // SAFETY: the same contract; what is no module of the kernel was refused.
         unsafe {
-            let layouts = Layouts::with(context, &SHADE, bindings, (context.descriptors.clone(), host_set))?;
-            Ok(Self { pipelines: Pipelines::new(layouts, &SHADE, module), tiles: None, options })
+            let layouts = Layouts::with(context, &SHADE, bindings, (descriptors, host_set))?;
+            let tiles = match tiles {
+                None => None,
+                Some(_) if module.is_some() && tile_module.is_none() => {
+                    let message = "is missing: tiles are classified by the G-buffer of `module`".into();
+                    return Err(Error::InvalidArgument { field: "tile_module", message });
+                }
+                Some(tiles) => {
+                    let classify = module_of(&CLASSIFY, options, tile_module.as_deref())?;
+                    Some(Tiles::new(&layouts, classify, tiles, table_size)?)
+                }
+            };
+            Ok(Self { pipelines: Pipelines::new(layouts, &SHADE, shade), tiles, options })
         }
     }
 
@@ -303,100 +214,43 @@ impl ShadePass {
     ///
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with compute.
-    /// - `set` was written by [`ShadePass::write_set`], with images that hold the frame's pixels and buffers
-    ///   that hold the lights that `frame.lights` is of; with tiles, with `frame.tile_lists`, a buffer of
-    ///   [`ShadePass::tile_memory`] for that size, which no pending commands use without a barrier between.
+    /// - A set was written by [`ShadePass::write_set`], or what is pushed is valid, with images that hold the
+    ///   frame's pixels and buffers that hold the lights that `frame.lights` is of; with tiles, with
+    ///   `frame.tile_lists`, a buffer of [`ShadePass::tile_memory`] for that size, which no pending commands
+    ///   use without a barrier between.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] names the field of `frame` that is wrong, or (in debug builds) the resource
     /// that its lights need and the set was written without; [`Error::Vulkan`] where a pipeline cannot be
     /// made. Then nothing is recorded.
-    pub unsafe fn record(
+    pub unsafe fn record<'a>(
         &self,
         command_buffer: vk::CommandBuffer,
-        set: vk::DescriptorSet,
-        frame: &ShadeFrame,
-    ) -> Result<(), Error> {
-        // SAFETY: the same contract.
-        unsafe { self.record_with(command_buffer, &Bound::Set(set), None, frame) }
-    }
-
-    /// As [`ShadePass::record`], of a pass made by [`ShadePass::with_module_and_set`]: `host_set` is bound as
-    /// set 1.
-    ///
-    /// # Safety
-    /// As [`ShadePass::record`]; `host_set` was allocated with the layout that the pass was made with, and
-    /// written.
-    ///
-    /// # Errors
-    /// As [`ShadePass::record`].
-    pub unsafe fn record_with_set(
-        &self,
-        command_buffer: vk::CommandBuffer,
-        set: vk::DescriptorSet,
-        host_set: vk::DescriptorSet,
-        frame: &ShadeFrame,
-    ) -> Result<(), Error> {
-        // SAFETY: the same contract.
-        unsafe { self.record_with(command_buffer, &Bound::Set(set), Some(host_set), frame) }
-    }
-
-    /// As [`ShadePass::record`], of a context [with push descriptors](Context::with_push_descriptors): the
-    /// resources are pushed, and no set is needed. `host_set` is bound as set 1, where the pass was made by
-    /// [`ShadePass::with_module_and_set`].
-    ///
-    /// # Safety
-    /// As [`ShadePass::record`] and [`ShadePass::write_set`]: the resources outlive the recorded work.
-    ///
-    /// # Errors
-    /// As [`ShadePass::record`] and [`ShadePass::write_set`].
-    pub unsafe fn record_pushed(
-        &self,
-        command_buffer: vk::CommandBuffer,
-        resources: &ShadeResources,
-        host_set: Option<vk::DescriptorSet>,
-        frame: &ShadeFrame,
-    ) -> Result<(), Error> {
-        let layouts = self.pipelines.layouts();
-        layouts.check_takes_resources()?;
-        let (resources, absent) = self.in_order(resources)?;
-        layouts.check_resources(&resources)?;
-        if let Some(field) = needed(frame.lights).into_iter().find(|binding| absent.contains(binding)) {
-            let message = "is missing, but the frame's lights need it".into();
-            return Err(Error::InvalidArgument { field, message });
-        }
-        // SAFETY: the same contract.
-        unsafe { self.record_with(command_buffer, &Bound::Pushed(resources), host_set, frame) }
-    }
-
-    /// # Safety
-    /// As [`ShadePass::record_with_set`] or [`ShadePass::record_pushed`]; what is pushed was checked.
-    unsafe fn record_with(
-        &self,
-        command_buffer: vk::CommandBuffer,
-        bound: &Bound,
-        host_set: Option<vk::DescriptorSet>,
+        bound: impl Into<Bound<'a>>,
         frame: &ShadeFrame,
     ) -> Result<(), Error> {
         // Check everything before anything is recorded
         let layouts = self.pipelines.layouts();
-        layouts.check_host_set(host_set)?;
+        let bound = bound.into();
+        layouts.check_host_set(bound.host_set())?;
         layouts.check_light_offsets(frame.light_offsets)?;
         let constants = self.constants(frame)?;
-        if let Bound::Set(set) = bound {
-            layouts.check_takes_sets()?;
-            layouts.check_present(*set, &needed(frame.lights))?;
-            layouts.check_set(*set)?;
-        }
+        let pushed = match bound {
+            Bound::Pushed { resources, .. } => self.pushed(resources, frame)?,
+            Bound::Set(set) | Bound::Sets([set, _]) => {
+                layouts.check_takes_sets()?;
+                layouts.check_present(set, &needed(frame.lights))?;
+                layouts.check_set(set)?;
+                vec![]
+            }
+        };
 
         // SAFETY: the same contract.
         let bind = || unsafe {
             match bound {
-                Bound::Set(set) => {
-                    let sets: Vec<_> = std::iter::once(*set).chain(host_set).collect();
-                    layouts.bind_sets(command_buffer, &sets, frame.light_offsets);
-                }
-                Bound::Pushed(resources) => layouts.push(command_buffer, resources, host_set),
+                Bound::Set(set) => layouts.bind_sets(command_buffer, &[set], frame.light_offsets),
+                Bound::Sets(sets) => layouts.bind_sets(command_buffer, &sets, frame.light_offsets),
+                Bound::Pushed { host_set, .. } => layouts.push(command_buffer, &pushed, host_set),
             }
         };
         let names = &layouts.context().names;
@@ -418,6 +272,21 @@ impl ShadePass {
                 pass.record_rows(command_buffer, bytemuck::bytes_of(&constants), (groups, rows));
             }
         })
+    }
+
+    /// The resources to push for a frame, checked.
+    fn pushed(&self, resources: &ShadeResources, frame: &ShadeFrame) -> Result<Vec<Resource>, Error> {
+        let layouts = self.pipelines.layouts();
+        layouts.check_takes_resources()?;
+        let (resources, absent) = self.in_order(resources)?;
+        layouts.check_resources(&resources)?;
+        match needed(frame.lights).into_iter().find(|binding| absent.contains(binding)) {
+            Some(field) => {
+                let message = "is missing, but the frame's lights need it".into();
+                Err(Error::InvalidArgument { field, message })
+            }
+            None => Ok(resources),
+        }
     }
 
     /// The resources as the pass's bindings have them; the bindings of those that are missing.
@@ -457,10 +326,18 @@ impl ShadePass {
     }
 }
 
-/// The resources that a frame's commands read.
-enum Bound {
-    Set(vk::DescriptorSet),
-    Pushed(Vec<Resource>),
+/// A kernel's own module or the host's, for the images of a pass.
+fn module_of(kernel: &'static Kernel, options: ShadeOptions, own: Option<&[u32]>) -> Result<Vec<u32>, Error> {
+    let mut words = match own {
+        None => kernel.words(),
+        Some(words) => {
+            check_module(words, kernel)?;
+            words.to_vec()
+        }
+    };
+    store_to(options.format, &mut words);
+    read_samples(options.samples, &mut words);
+    Ok(words)
 }
 
 /// The rows of workgroups that a record shades.

@@ -1,13 +1,14 @@
 //! Shadows: rays for the lights and lobes that the shade pass picked, and what their mean makes of its
 //! radiance.
 
-use crate::context::{Context, Descriptors};
+use crate::context::Context;
 use crate::error::Error;
-use crate::layouts::Layouts;
+use crate::frame::ShadeFrame;
+use crate::layouts::{Descriptors, Layouts};
 use crate::module::check_module;
-use crate::pass::Resource;
 use crate::pipelines::Pipelines;
-use crate::shade::{ResourceAccess, ShadeFrame, ShadeResources, accesses_of};
+use crate::resource::Resource;
+use crate::shade::{Bound, ResourceAccess, ShadeResources, accesses_of};
 use crate::view::{View, check_view, view_of};
 use arealight::LightSummary;
 use arealight::gpu::ShadowConstants;
@@ -28,6 +29,21 @@ pub struct ShadowOptions {
     pub output: Output,
 }
 
+/// The options and modules of a shadow pass.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ShadowPassInfo {
+    /// Those of the shade passes before it.
+    pub options: ShadeOptions,
+    /// What is done with their radiance.
+    pub shadows: ShadowOptions,
+    /// A module that the host compiled from the kernel `shadow_rays.comp` with its own answer to what blocks
+    /// a ray (docs/shadows.md): a shadow map, an acceleration structure. By default rays meet
+    /// [`ShadowResources::blockers`].
+    pub module: Option<Vec<u32>>,
+    /// The layout of descriptor set 1, where what that module reads is.
+    pub host_set: Option<vk::DescriptorSetLayout>,
+}
+
 /// The host's resources of a shadow pass beyond those of its shade pass.
 #[derive(Debug, Clone, Copy)]
 pub struct ShadowResources {
@@ -44,7 +60,7 @@ pub struct ShadowResources {
     /// With [`ShadowHistory::MotionVectors`], an image: for each pixel where its point was in the frame
     /// before less where it is, in parts of the image's width and height.
     pub motion: Option<Resource>,
-    /// What blocks rays; none with a module that asks the host ([`ShadowPass::with_module`]).
+    /// What blocks rays; none with [`ShadowPassInfo::module`].
     pub blockers: Option<BlockerResources>,
 }
 
@@ -65,8 +81,6 @@ pub struct ShadowFrame<'a> {
     /// That of the shade pass. With [`ShadowOptions::history`] it has [`ShadeFrame::position_from_clip`],
     /// also where positions come from an image, and [`ShadeFrame::seed`] counts frames.
     pub shade: &'a ShadeFrame,
-    /// Bound as set 1 for a module of the host's.
-    pub host_set: Option<vk::DescriptorSet>,
     /// What is added to positions relative to this frame's origin for positions relative to that of the frame
     /// before. Read only with [`ShadowOptions::history`].
     pub origin_shift: Vec3,
@@ -100,79 +114,34 @@ impl ShadowPass {
     /// The format of [`ShadowResources::shadow`].
     pub const SHADOW_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
-    /// A pass whose rays meet [`ShadowResources::blockers`], after shade passes of `options`.
+    /// Creates the set and pipeline layouts.
     ///
     /// # Safety
-    /// As [`crate::ShadePass::new`].
+    /// As [`crate::ShadePass::new`], of [`ShadowPassInfo::module`] and [`ShadowPassInfo::host_set`].
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] where `options` have no shadow rays, or more than a pixel may have;
-    /// [`Error::MissingFeature`] where the device has too few storage buffers for a stage; [`Error::Vulkan`]
-    /// where a call fails.
-    pub unsafe fn new(
-        context: &Context,
-        options: ShadeOptions,
-        shadows: ShadowOptions,
-    ) -> Result<Self, Error> {
+    /// [`Error::InvalidArgument`] where the options have no shadow rays, or more than a pixel may have, or
+    /// the module lacks the kernel's entry point and bindings; [`Error::MissingFeature`] where the device has
+    /// too few storage buffers for a stage; [`Error::Vulkan`] where a call fails.
+    pub unsafe fn new(context: &Context, info: ShadowPassInfo) -> Result<Self, Error> {
+        let ShadowPassInfo { options, shadows, module, host_set } = info;
         check_rays(options)?;
-        // SAFETY: the same contract; the module is the kernel's.
-        unsafe {
-            let layouts = Layouts::new(context, &SHADOW_RAYS)?;
-            Ok(Self::of(&layouts, options, shadows, SHADOW_RAYS.words()))
-        }
-    }
-
-    /// As [`ShadowPass::new`], of a module that the host compiled from the kernel `shadow_rays.comp` with its
-    /// own answer to what blocks a ray (docs/shadows.md): a shadow map, an acceleration structure. What that
-    /// reads is in descriptor set 1, of this layout.
-    ///
-    /// # Safety
-    /// As [`ShadowPass::new`]. The module is valid SPIR-V of this version's kernel; `host_set` is a layout of
-    /// the device, valid as long as the pass.
-    ///
-    /// # Errors
-    /// As [`ShadowPass::new`]; [`Error::InvalidArgument`] if it is not a module with the kernel's
-    /// entry point and bindings.
-    pub unsafe fn with_module(
-        context: &Context,
-        options: ShadeOptions,
-        shadows: ShadowOptions,
-        module: Vec<u32>,
-        host_set: vk::DescriptorSetLayout,
-    ) -> Result<Self, Error> {
-        check_rays(options)?;
+        let module = module.unwrap_or_else(|| SHADOW_RAYS.words());
         check_module(&module, &SHADOW_RAYS)?;
-        // SAFETY: the same contract.
-        unsafe {
-            let layouts = Layouts::with(
-                context,
-                &SHADOW_RAYS,
-                SHADOW_RAYS.bindings,
-                (Descriptors::Sets, Some(host_set)),
-            )?;
-            Ok(Self::of(&layouts, options, shadows, module))
-        }
-    }
-
-    /// # Safety
-    /// As [`Pipelines::new`].
-    unsafe fn of(
-        layouts: &Arc<Layouts>,
-        options: ShadeOptions,
-        shadows: ShadowOptions,
-        module: Vec<u32>,
-    ) -> Self {
         let mut filter = SHADOW_FILTER.words();
         store_to(options.format, &mut filter);
-        // SAFETY: the same contract; both kernels have the bindings of the layouts.
+        let binding = (Descriptors::Sets, host_set);
+        // SAFETY: the same contract; every kernel has the bindings of the layouts.
         unsafe {
-            Self {
-                rays: Pipelines::new(Arc::clone(layouts), &SHADOW_RAYS, module),
-                history: Pipelines::new(Arc::clone(layouts), &SHADOW_HISTORY, SHADOW_HISTORY.words()),
-                filter: Pipelines::new(Arc::clone(layouts), &SHADOW_FILTER, filter),
+            let layouts = Layouts::with(context, &SHADOW_RAYS, SHADOW_RAYS.bindings, binding)?;
+            let pipelines = |kernel, module| Pipelines::new(Arc::clone(&layouts), kernel, module);
+            Ok(Self {
+                rays: pipelines(&SHADOW_RAYS, module),
+                history: pipelines(&SHADOW_HISTORY, SHADOW_HISTORY.words()),
+                filter: pipelines(&SHADOW_FILTER, filter),
                 options,
                 shadows,
-            }
+            })
         }
     }
 
@@ -295,24 +264,24 @@ impl ShadowPass {
     }
 
     /// Records the pass, for the frame that the shade pass recorded. With a history, `resources` are those
-    /// that `set` was written with: its buffer is updated too.
+    /// that the set was written with: its buffer is updated too.
     ///
     /// # Safety
-    /// As [`crate::ShadePass::record`]; `set` was written by [`ShadowPass::write_set`] with `resources`, and
-    /// [`ShadowFrame::host_set`] allocated with the layout that the pass was made with. With a history, the
-    /// frame before of this view was recorded earlier on the same queue.
+    /// As [`crate::ShadePass::record`]; the set was written by [`ShadowPass::write_set`] with `resources`,
+    /// and the host's allocated with the layout that the pass was made with. With a history, the frame before
+    /// of this view was recorded earlier on the same queue.
     ///
     /// # Errors
     /// As [`crate::ShadePass::record`]; [`Error::InvalidArgument`] names the field of `frame` that is
     /// missing, not to be, or wrong.
-    pub unsafe fn record(
+    pub unsafe fn record<'a>(
         &self,
         command_buffer: vk::CommandBuffer,
-        set: vk::DescriptorSet,
+        bound: impl Into<Bound<'a>>,
         resources: &ShadowResources,
         frame: &ShadowFrame<'_>,
     ) -> Result<(), Error> {
-        let ready = self.checked(set, resources, frame)?;
+        let ready = self.checked(bound.into(), resources, frame)?;
         let context = self.rays.layouts().context();
         // SAFETY: the same contract; barriers are between the stages.
         unsafe {
@@ -344,15 +313,15 @@ impl ShadowPass {
     ///
     /// # Errors
     /// As [`ShadowPass::record`].
-    pub unsafe fn record_stage(
+    pub unsafe fn record_stage<'a>(
         &self,
         stage: ShadowStage,
         command_buffer: vk::CommandBuffer,
-        set: vk::DescriptorSet,
+        bound: impl Into<Bound<'a>>,
         resources: &ShadowResources,
         frame: &ShadowFrame<'_>,
     ) -> Result<(), Error> {
-        let ready = self.checked(set, resources, frame)?;
+        let ready = self.checked(bound.into(), resources, frame)?;
         // SAFETY: the same contract.
         unsafe { self.dispatch(stage, command_buffer, &ready) }
     }
@@ -360,11 +329,19 @@ impl ShadowPass {
     /// A frame, where everything about it is right; what is missing of the pipelines is made.
     fn checked(
         &self,
-        set: vk::DescriptorSet,
+        bound: Bound<'_>,
         resources: &ShadowResources,
         frame: &ShadowFrame<'_>,
     ) -> Result<ReadyFrame, Error> {
-        self.rays.layouts().check_host_set(frame.host_set)?;
+        self.rays.layouts().check_host_set(bound.host_set())?;
+        let sets = match bound {
+            Bound::Set(set) => vec![set],
+            Bound::Sets(sets) => sets.to_vec(),
+            Bound::Pushed { .. } => {
+                let message = "are given, but shadow passes take sets".into();
+                return Err(Error::InvalidArgument { field: "resources", message });
+            }
+        };
         let view = view_of(self.options, frame.shade)?;
         if frame.shade.rows.is_some() {
             let message = "are a part of the frame, but shadows are of all of it: record its parts by the \
@@ -376,10 +353,9 @@ impl ShadowPass {
         let position_from_clip = view.position_from_clip.to_cols_array_2d();
         let constants = ShadowConstants { position_from_clip, camera: view.camera, seed, size };
         let groups = SHADOW_RAYS.groups_for([size[0], size[1], 1]);
-        self.rays.layouts().check_set(set)?;
+        self.rays.layouts().check_set(sets[0])?;
         self.rays.check(bytemuck::bytes_of(&constants), groups)?;
         self.prepare(lights)?;
-        let sets = std::iter::once(set).chain(frame.host_set).collect();
         Ok(ReadyFrame { sets, constants, groups, head, lights })
     }
 

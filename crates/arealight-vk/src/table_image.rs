@@ -2,7 +2,7 @@
 
 use crate::context::Context;
 use crate::error::{Error, VulkanCall};
-use crate::pass::Resource;
+use crate::resource::Resource;
 use arealight::LightTable;
 use arealight::table::LAYERS;
 use ash::vk;

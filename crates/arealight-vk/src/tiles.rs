@@ -1,10 +1,10 @@
 //! Tiles of the shade pass: how they are classified, and how the classes are shaded.
 
 use crate::error::Error;
+use crate::frame::ShadeFrame;
 use crate::layouts::Layouts;
-use crate::pass::Resource;
 use crate::pipelines::Pipelines;
-use crate::shade::ShadeFrame;
+use crate::resource::Resource;
 use arealight::LightSummary;
 use arealight::gpu::ShadeConstants;
 use arealight::kernels::CLASSIFY;
@@ -43,10 +43,10 @@ pub(crate) struct TiledFrame {
 
 impl Tiles {
     /// # Safety
-    /// As [`Pipelines::new`]; the layouts have every binding of the shade kernel.
+    /// As [`Pipelines::new`], of a module of the kernel; the layouts have every binding of the shade kernel.
     pub(crate) unsafe fn new(
         layouts: &Arc<Layouts>,
-        options: ShadeOptions,
+        module: Vec<u32>,
         tiles: TileOptions,
         table_size: u32,
     ) -> Result<Self, Error> {
@@ -61,7 +61,6 @@ impl Tiles {
         if table_size < 2 {
             return wrong("table_size", format!("is {table_size}, but a table has at least 2 nodes a side"));
         }
-        let module = CLASSIFY.words_for(options.format, options.samples);
         // SAFETY: the same contract; the kernel has the shade kernel's bindings.
         let classify = unsafe { Pipelines::new(Arc::clone(layouts), &CLASSIFY, module) };
         Ok(Self { classify, options: tiles, horizon_cells: table_size - 1 })

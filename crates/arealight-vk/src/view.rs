@@ -1,35 +1,9 @@
 //! From where a frame is seen, and which pixels of the host's images it is.
 
 use crate::error::Error;
-use crate::shade::ShadeFrame;
+use crate::frame::{ShadeFrame, Viewport};
 use arealight::plan::ShadeOptions;
-use ash::vk;
 use glam::{DMat4, DVec3, Mat4};
-
-/// The rectangle of a G-buffer's texels that clip space was drawn to, as `vkCmdSetViewport` got it:
-/// `VkViewport`.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Viewport {
-    /// Where x = -1 in clip space is, in texels.
-    pub x: f32,
-    /// Where y = -1 in clip space is, in texels: with a negative height the lower edge.
-    pub y: f32,
-    /// Above 0.
-    pub width: f32,
-    /// Negative where y is up in clip space. Not 0.
-    pub height: f32,
-    /// The depth that is stored of depth 0 in clip space.
-    pub min_depth: f32,
-    /// The depth that is stored of depth 1. Not `min_depth`.
-    pub max_depth: f32,
-}
-
-impl From<vk::Viewport> for Viewport {
-    fn from(viewport: vk::Viewport) -> Self {
-        let vk::Viewport { x, y, width, height, min_depth, max_depth } = viewport;
-        Self { x, y, width, height, min_depth, max_depth }
-    }
-}
 
 /// A frame's view, as kernels have it.
 pub(crate) struct View {

@@ -3,7 +3,7 @@
 //! one entry in a map, without memory of its own unless something is absent.
 
 use crate::error::Error;
-use crate::pass::Resource;
+use crate::resource::Resource;
 use arealight::kernels::Kernel;
 use ash::vk;
 use std::collections::{HashMap, VecDeque};

@@ -7,7 +7,9 @@ use crate::picture::{Picture, Readback};
 use crate::{Result, scene};
 use arealight::plan::{Output, ShadeOptions, TileOptions};
 use arealight::{PackedLights, SpecularLobes};
-use arealight_vk::{Context, Resource, ShadeFrame, ShadePass, ShadeResources, TableFormat, TableImage};
+use arealight_vk::{
+    Context, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources, TableFormat, TableImage,
+};
 use ash::vk;
 
 /// Bytes of a buffer that changes with the frame: more than the scene's vertices and lights need.
@@ -54,11 +56,11 @@ impl<'a> Deferred<'a> {
         let options = ShadeOptions { from_depth: true, output: Output::Add, ..ShadeOptions::default() };
         GBuffer::FORMATS.check(options)?; // says which image has another format than it should
         let table = arealight::LightTable::ggx();
-        // With tiles, for scenes of many lights; without, ShadePass::new. (TileOptions::default() classifies
-        // no frame of two.)
+        // With tiles, for scenes of many lights. (TileOptions::default() classifies no frame of two.)
         let tiles = TileOptions { least_quads: 0, ..TileOptions::default() };
+        let info = ShadePassInfo { tiles: Some(tiles), table_size: table.size(), ..options.into() };
         // SAFETY: the pass is dropped after the frames, and before the device.
-        let shade = unsafe { ShadePass::with_tiles(&context, options, tiles, table.size()) }?;
+        let shade = unsafe { ShadePass::new(&context, info) }?;
         // doc end
 
         // doc: table

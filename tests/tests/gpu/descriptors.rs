@@ -7,7 +7,7 @@ use arealight::plan::ShadeOptions;
 use arealight_engine::host::{Buffer, Host};
 use arealight_tests::TestEngine;
 use arealight_tests::floor::{Floor, lamps};
-use arealight_vk::{Context, Resource, ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{Bound, Descriptors, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources};
 use ash::vk;
 use glam::{DVec3, Vec4};
 
@@ -55,12 +55,11 @@ fn frames_of_a_ring_have_their_offsets() {
         ..floor.resources()
     };
     let (options, frame) = (ShadeOptions::default(), floor.frame());
-    let context = engine.context().clone().with_light_offsets();
     for tiles in [false, true] {
-        let by_sets = |offset| floor.shade(engine.context(), options, tiles, (&at(offset), &frame, false));
+        let by_sets = |offset| floor.shade(options, tiles, (&at(offset), &frame, Descriptors::Sets));
         let by_offsets = |offset: usize| {
             let frame = ShadeFrame { light_offsets: [offset as u32; 3], ..frame };
-            floor.shade(&context, options, tiles, (&at(0), &frame, false))
+            floor.shade(options, tiles, (&at(0), &frame, Descriptors::LightOffsets))
         };
         let (first, second) = (by_sets(0), by_sets(SLOT));
         assert_eq!(by_offsets(0), first);
@@ -70,16 +69,18 @@ fn frames_of_a_ring_have_their_offsets() {
     }
 }
 
+fn pushed(resources: &ShadeResources) -> Bound<'_> {
+    Bound::Pushed { resources, host_set: None }
+}
+
 #[test]
 fn pushed_resources_shade_as_sets_do() {
     let Some(engine) = TestEngine::with_push_descriptors() else { return };
     let floor = Floor::new(&engine, &lamps());
-    // SAFETY: The instance is the device's, which has the extension.
-    let context = unsafe { engine.context().clone().with_push_descriptors(engine.host().instance()) };
     let (options, frame) = (ShadeOptions::default(), floor.frame());
     for tiles in [false, true] {
-        let pushed = floor.shade(&context, options, tiles, (&floor.resources(), &frame, true));
-        let by_sets = floor.shade(engine.context(), options, tiles, (&floor.resources(), &frame, false));
+        let pushed = floor.shade(options, tiles, (&floor.resources(), &frame, Descriptors::Pushed));
+        let by_sets = floor.shade(options, tiles, (&floor.resources(), &frame, Descriptors::Sets));
         assert_eq!(differ(&pushed, &by_sets), 0);
         assert!(by_sets.iter().any(|texel| texel.x > 0.1));
     }
@@ -87,9 +88,10 @@ fn pushed_resources_shade_as_sets_do() {
     let without = ShadeResources { shapes: None, ..floor.resources() };
     // SAFETY: Nothing is recorded where an error is returned.
     unsafe {
-        let pass = ShadePass::new(&context, options).unwrap();
+        let info = ShadePassInfo { descriptors: Descriptors::Pushed, ..options.into() };
+        let pass = ShadePass::new(engine.context(), info).unwrap();
         let null = vk::CommandBuffer::null();
-        let missed = pass.record_pushed(null, &without, None, &frame).unwrap_err();
+        let missed = pass.record(null, pushed(&without), &frame).unwrap_err();
         assert_eq!(field(&missed), "shapes");
         let set = vk::DescriptorSet::null();
         assert_eq!(field(&pass.record(null, set, &frame).unwrap_err()), "set");
@@ -102,18 +104,19 @@ fn ways_of_binding_are_not_mixed_up() {
     let Some(engine) = TestEngine::new() else { return };
     let floor = Floor::new(&engine, &lamps());
     let (null, set) = (vk::CommandBuffer::null(), vk::DescriptorSet::null());
-    let made = |context: &Context| {
+    let made = |descriptors| {
+        let info = ShadePassInfo { descriptors, ..ShadePassInfo::default() };
         // SAFETY: It is dropped before the engine, and nothing is recorded.
-        unsafe { ShadePass::new(context, ShadeOptions::default()) }.unwrap()
+        unsafe { ShadePass::new(engine.context(), info) }.unwrap()
     };
     let moved = ShadeFrame { light_offsets: [0, 1 << 16, 0], ..floor.frame() };
     // SAFETY: Nothing is recorded or written where an error is returned.
     unsafe {
-        let plain = made(engine.context());
-        let pushed = plain.record_pushed(null, &floor.resources(), None, &floor.frame());
-        assert_eq!(field(&pushed.unwrap_err()), "resources");
+        let plain = made(Descriptors::Sets);
+        let resources = plain.record(null, pushed(&floor.resources()), &floor.frame());
+        assert_eq!(field(&resources.unwrap_err()), "resources");
         assert_eq!(field(&plain.record(null, set, &moved).unwrap_err()), "light_offsets");
-        let ring = made(&engine.context().clone().with_light_offsets());
+        let ring = made(Descriptors::LightOffsets);
         // An offset needs a range, and an alignment
         assert_eq!(field(&ring.write_set(set, &floor.resources()).unwrap_err()), "lights");
         let odd = ShadeFrame { light_offsets: [0, 0, 3], ..floor.frame() };

@@ -10,7 +10,7 @@ use arealight_tests::TestEngine;
 use arealight_tests::c_library::{CLibrary, DeviceMemory, c_lamp, good, refused};
 use arealight_tests::kernel::shade_with_bridge;
 use arealight_tests::one_pixel::{OnePixel, lamp, sampled};
-use arealight_vk::{Error, ShadePass};
+use arealight_vk::{Error, ShadePass, ShadePassInfo};
 use ash::vk::Format;
 use glam::{Vec3, Vec4};
 use std::ptr::null_mut;
@@ -208,9 +208,9 @@ fn a_bridge_of_the_host_reads_its_own_g_buffer(engine: &TestEngine) {
     let argument = ArealightResult::ErrorArgument;
     refused(make(&[7], 4).0, argument, "module: does not begin as SPIR-V does");
     refused(make(&module, 7).0, argument, "size: 7 bytes are no whole words of SPIR-V");
+    let info = ShadePassInfo { module: Some(vec![7]), ..options(GBufferLayout::Arealight).into() };
     // SAFETY: nothing is made where an error is returned.
-    let error =
-        unsafe { ShadePass::with_module(engine.context(), options(GBufferLayout::Arealight), vec![7]) };
+    let error = unsafe { ShadePass::new(engine.context(), info) };
     let error = error.unwrap_err();
     assert!(matches!(error, Error::InvalidArgument { field: "module", .. }), "{error}");
 }

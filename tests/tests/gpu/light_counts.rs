@@ -4,7 +4,7 @@ use arealight::gpu::LightCounts;
 use arealight::plan::ShadeOptions;
 use arealight_tests::TestEngine;
 use arealight_tests::floor::{Floor, lamps, pixels};
-use arealight_vk::{Resource, ShadeResources};
+use arealight_vk::{Descriptors, Resource, ShadeResources};
 use glam::{DVec3, Vec4};
 
 /// The largest difference from what these numbers of lights of the buffers give.
@@ -41,7 +41,7 @@ fn counts_of_a_buffer_are_how_many_lights_are_shaded() {
             let buffer = engine.host().storage_buffer("counts", &[written]).unwrap();
             let light_counts = Some(Resource::buffer(buffer.handle()));
             let resources = ShadeResources { light_counts, ..floor.resources() };
-            let found = floor.shade(engine.context(), options, tiles, (&resources, &floor.frame(), false));
+            let found = floor.shade(options, tiles, (&resources, &floor.frame(), Descriptors::Sets));
             let worst_of = |counts| worst(&floor, counts, &found);
             let error = worst_of(shaded.unwrap_or(written));
             assert!(error < 1e-4, "{written:?}, tiles {tiles}: {error:e}");

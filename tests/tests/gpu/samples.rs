@@ -13,7 +13,7 @@ use arealight_tests::floor::{
 use arealight_tests::kernel::shade_with_bridge;
 use arealight_tests::multisampled::{Multisampled, Texel};
 use arealight_tests::one_pixel::BEFORE;
-use arealight_vk::{ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{Descriptors, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources};
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec4};
 
 /// What a sample shows.
@@ -180,7 +180,7 @@ fn pixels_of_several_samples_are_the_mean_over_their_surfaces() {
         let options = ShadeOptions { samples, from_depth, output, ..ShadeOptions::default() };
         let position_from_clip = Some(clip_from_position().inverse().as_mat4());
         let frame = ShadeFrame { position_from_clip, ..floor.frame() };
-        let found = floor.shade(engine.context(), options, tiles, (&resources, &frame, false));
+        let found = floor.shade(options, tiles, (&resources, &frame, Descriptors::Sets));
         let before = if output == Output::Add { BEFORE } else { Vec4::ZERO };
         let worst = |shading| oracle.worst(samples, shading, &found, before);
         let error = worst(Shading::Surfaces);
@@ -210,7 +210,8 @@ fn a_host_s_own_g_buffer_may_have_samples() {
     let frame = Floor::new(&engine, &lamps()).frame();
     // SAFETY: The module is the kernel's, and nothing is recorded.
     unsafe {
-        let pass = ShadePass::with_module(engine.context(), options, words).unwrap();
+        let info = ShadePassInfo { module: Some(words), ..options.into() };
+        let pass = ShadePass::new(engine.context(), info).unwrap();
         pass.prepare(&frame).unwrap();
     }
 }

@@ -5,12 +5,17 @@ use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOpt
 use arealight_tests::TestEngine;
 use arealight_tests::frame::{scene, with_renderer};
 use arealight_vk::{
-    BlockerResources, Error, Resource, ShadePass, ShadeResources, ShadowOptions, ShadowPass, ShadowResources,
+    BlockerResources, Error, Resource, ShadePass, ShadeResources, ShadowOptions, ShadowPass, ShadowPassInfo,
+    ShadowResources,
 };
 use ash::vk;
 
 fn with_rays(shadow_rays: u32) -> ShadeOptions {
     ShadeOptions { shadow_rays, ..ShadeOptions::default() }
+}
+
+fn info(options: ShadeOptions, shadows: ShadowOptions) -> ShadowPassInfo {
+    ShadowPassInfo { options, shadows, ..ShadowPassInfo::default() }
 }
 
 #[test]
@@ -33,7 +38,8 @@ fn options_that_no_shadow_can_be_made_with_are_refused() {
 
     for (rays, is_refused) in [(0, true), (5, true), (1, false)] {
         // SAFETY: As above.
-        let made = unsafe { ShadowPass::new(engine.context(), with_rays(rays), ShadowOptions::default()) };
+        let made =
+            unsafe { ShadowPass::new(engine.context(), info(with_rays(rays), ShadowOptions::default())) };
         assert_eq!(
             made.err().map(|error| field(&error).to_owned()),
             is_refused.then(|| "shadow_rays".into())
@@ -53,8 +59,8 @@ fn what_a_shadow_pass_reads_is_asked_for() {
     // SAFETY: The passes are dropped unused; sets are null where an error comes first.
     unsafe {
         let shade = ShadePass::new(engine.context(), options).unwrap();
-        let shadow = ShadowPass::new(engine.context(), options, ShadowOptions::default()).unwrap();
-        let over_frames = ShadowPass::new(engine.context(), options, history).unwrap();
+        let shadow = ShadowPass::new(engine.context(), info(options, ShadowOptions::default())).unwrap();
+        let over_frames = ShadowPass::new(engine.context(), info(options, history)).unwrap();
         let scene = scene("sweep.glb");
         with_renderer(&engine, &scene, &scene.lights, [8, 8], |renderer| {
             let view = renderer.tiled(ShadeOptions::default(), TileOptions::default()).unwrap();

@@ -4,7 +4,7 @@ use arealight::plan::{Output, ShadeOptions};
 use arealight_tests::TestEngine;
 use arealight_tests::floor::{Floor, SIZE, image, lamps, pixels, read};
 use arealight_tests::one_pixel::BEFORE;
-use arealight_vk::{Error, ShadeFrame, ShadePass, ShadeResources, StencilTest};
+use arealight_vk::{Descriptors, Error, ShadeFrame, ShadePass, ShadeResources, StencilTest};
 use ash::vk;
 use glam::DVec3;
 
@@ -34,7 +34,7 @@ fn pixels_that_fail_the_stencil_test_stay_as_they_are() {
         let options = ShadeOptions { stencil: true, output, ..ShadeOptions::default() };
         let test = StencilTest { compare_mask, reference };
         let frame = ShadeFrame { stencil: test, ..floor.frame() };
-        let found = floor.shade(engine.context(), options, tiles, (&resources, &frame, false));
+        let found = floor.shade(options, tiles, (&resources, &frame, Descriptors::Sets));
         let mut passed = 0;
         for (pixel, found) in pixels().zip(found) {
             if stencil(pixel) & compare_mask != reference & compare_mask {
@@ -52,7 +52,7 @@ fn pixels_that_fail_the_stencil_test_stay_as_they_are() {
     }
     // The twin: a mask of no bits passes everything
     let options = ShadeOptions { stencil: true, ..ShadeOptions::default() };
-    let found = floor.shade(engine.context(), options, false, (&resources, &floor.frame(), false));
+    let found = floor.shade(options, false, (&resources, &floor.frame(), Descriptors::Sets));
     assert!(found.iter().all(|texel| *texel != BEFORE));
 }
 

@@ -1,5 +1,6 @@
 //! Shading by tiles: the picture without, whatever the lights; lists, classes and their bounds.
 
+use arealight::kernels::{CLASSIFY, SHADE};
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{Effects, Light, LightShape, LightTexture, Quality, TileClass, TubeEnds};
 use arealight_engine::{SceneRenderer, TileCounts};
@@ -7,7 +8,7 @@ use arealight_oracle::texture::Texture;
 use arealight_scene::Scene;
 use arealight_tests::TestEngine;
 use arealight_tests::frame::{scene, with_renderer};
-use arealight_vk::{Error, Resource, ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{Error, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources};
 use ash::vk;
 use glam::{DVec3, Vec3, Vec4};
 use std::sync::Arc;
@@ -371,16 +372,23 @@ fn options_out_of_range_and_missing_buffers_are_refused() {
         let Error::InvalidArgument { field, .. } = error else { panic!("{error}") };
         field
     };
-    let make = |tiles, table_size| {
+    let make_of = |info| {
         // SAFETY: Nothing is made where an error is returned; else it is dropped before the engine.
-        unsafe { ShadePass::with_tiles(engine.context(), ShadeOptions::default(), tiles, table_size) }
+        unsafe { ShadePass::new(engine.context(), info) }
     };
+    let info_of =
+        |tiles, table_size| ShadePassInfo { tiles: Some(tiles), table_size, ..ShadePassInfo::default() };
+    let make = |tiles, table_size| make_of(info_of(tiles, table_size));
     let refused = |tiles, table_size| field(make(tiles, table_size).unwrap_err());
     assert_eq!(refused(TileOptions { capacity: 0, ..every_frame() }, 64), "capacity");
     for cull_threshold in [1.0, -0.1, f32::NAN] {
         assert_eq!(refused(TileOptions { cull_threshold, ..every_frame() }, 64), "cull_threshold");
     }
     assert_eq!(refused(every_frame(), 1), "table_size");
+    // A module of the host's has one for tiles too
+    let own = ShadePassInfo { module: Some(SHADE.words()), ..info_of(every_frame(), 64) };
+    assert_eq!(field(make_of(own.clone()).unwrap_err()), "tile_module");
+    make_of(ShadePassInfo { tile_module: Some(CLASSIFY.words()), ..own }).unwrap();
 
     let pass = make(every_frame(), 64).unwrap();
     let needed = pass.tile_memory([17, 8]).unwrap();

@@ -10,7 +10,7 @@ use arealight_oracle::shading::{RelativeLight, ltc};
 use arealight_tests::TestEngine;
 use arealight_tests::floor::{image, looking_at_floor};
 use arealight_tests::one_pixel::{BEFORE, lamp, material};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, Viewport};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources, Viewport};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4, Vec3, Vec4};
 
@@ -146,11 +146,9 @@ fn shade(
     // SAFETY: Host::submit waits, and everything here is dropped before the engine.
     unsafe {
         let every_frame = TileOptions { least_quads: 0, ..TileOptions::default() };
-        let pass = if tiles {
-            ShadePass::with_tiles(engine.context(), options, every_frame, table.size()).unwrap()
-        } else {
-            ShadePass::new(engine.context(), options).unwrap()
-        };
+        let (tiled, table_size) = (tiles.then_some(every_frame), table.size());
+        let info = ShadePassInfo { tiles: tiled, table_size, ..options.into() };
+        let pass = ShadePass::new(engine.context(), info).unwrap();
         let packed = PackedLights::new(&lights(), DVec3::ZERO).unwrap();
         let light_buffer = host.storage_buffer("lights", &packed.lights).unwrap();
         let vertices = host.storage_buffer("vertices", &packed.vertices).unwrap();

@@ -1,7 +1,7 @@
 //! The host's images and buffers that a shade pass reads and writes.
 
 use crate::error::Error;
-use crate::pass::Resource;
+use crate::resource::Resource;
 use arealight::kernels::{Access, BindingKind, Kernel};
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, LightSummary};

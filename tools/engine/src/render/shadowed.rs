@@ -10,7 +10,7 @@ use arealight_scene::{BufferError, SceneBuffers};
 use arealight_tool_kernels::gpu::GpuTriangle;
 use arealight_vk::{
     BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowFrame, ShadowOptions,
-    ShadowPass, ShadowResources, ShadowStage,
+    ShadowPass, ShadowPassInfo, ShadowResources, ShadowStage,
 };
 use ash::vk;
 use glam::{Vec3, Vec4};
@@ -124,7 +124,8 @@ impl SceneRenderer<'_> {
         // SAFETY: The passes are dropped when no frame uses them, before the device.
         let (shade, shadow) = unsafe {
             let output = ShadowOptions { filter, history, output: Output::Add };
-            (ShadePass::new(engine.context(), options)?, ShadowPass::new(engine.context(), options, output)?)
+            let info = ShadowPassInfo { options, shadows: output, ..ShadowPassInfo::default() };
+            (ShadePass::new(engine.context(), options)?, ShadowPass::new(engine.context(), info)?)
         };
         // Blockers::new of the scene's triangles; upload its nodes and triangles
         let blockers = blockers(scene)?;
@@ -204,7 +205,7 @@ impl SceneRenderer<'_> {
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
         let whole = self.shadowed_frame(seed);
-        let frame = ShadowFrame { shade: &whole, host_set: None, origin_shift: Vec3::ZERO };
+        let frame = ShadowFrame { shade: &whole, origin_shift: Vec3::ZERO };
         let resources = self.shadow_resources(view);
         self.submit_parts(whole.parts(self.most_pairs), |commands, &shade| {
             if is_first(&shade) {
@@ -256,7 +257,7 @@ impl SceneRenderer<'_> {
         seed: u32,
     ) -> Result<Option<Duration>, EngineError> {
         let shade = self.shadowed_frame(seed);
-        let frame = ShadowFrame { shade: &shade, host_set: None, origin_shift: Vec3::ZERO };
+        let frame = ShadowFrame { shade: &shade, origin_shift: Vec3::ZERO };
         let resources = self.shadow_resources(view);
         self.engine.host().try_submit_timed(|commands| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);

@@ -6,7 +6,7 @@ use crate::kept::Kept;
 use crate::{Engine, EngineError};
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{Effects, TileClass, tiles};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, TileMemory};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources, TileMemory};
 use ash::vk;
 use std::cell::RefCell;
 use std::ops::Add;
@@ -155,10 +155,10 @@ impl SceneRenderer<'_> {
     pub fn tiled(&self, options: ShadeOptions, tiles: TileOptions) -> Result<TiledView, EngineError> {
         let engine = self.engine;
         let host = engine.host();
+        let table_size = engine.table_size();
+        let info = ShadePassInfo { tiles: Some(tiles), table_size, ..self.seen(options).into() };
         // SAFETY: As in Engine::pass.
-        let pass = unsafe {
-            ShadePass::with_tiles(engine.context(), self.seen(options), tiles, engine.table_size())
-        }?;
+        let pass = unsafe { ShadePass::new(engine.context(), info) }?;
         let pass = Kept::new(host, pass);
         let lobe_horizons =
             engine.storage("lobe horizons", engine.lobe_horizons(options.quality.specular_lobes))?;
