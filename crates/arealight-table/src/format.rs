@@ -69,8 +69,8 @@ pub enum Target {
     CHeader(Precision),
     /// A GLSL array of 16-bit floats, and the functions of the bridge that read it.
     Glsl,
-    /// [`arealight::LightTable::numbers`] as little-endian 32-bit floats and nothing else: what the built-in table is
-    /// embedded as.
+    /// [`arealight::LightTable::numbers`] as little-endian 32-bit floats and nothing else: what the built-in
+    /// table is embedded as.
     Raw,
 }
 

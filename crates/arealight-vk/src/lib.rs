@@ -28,7 +28,8 @@
 //! use arealight::{plan::ShadeOptions, PackedLights};
 //!
 //! # unsafe fn frame(instance: &ash::Instance, physical_device: vk::PhysicalDevice, device: &ash::Device,
-//! #     command_buffer: vk::CommandBuffer, set: vk::DescriptorSet, resources: &ShadeResources, lights: &[arealight::Light], camera: glam::DVec3)
+//! #     command_buffer: vk::CommandBuffer, set: vk::DescriptorSet, resources: &ShadeResources,
+//! #     lights: &[arealight::Light], camera: glam::DVec3)
 //! #     -> Result<(), arealight_vk::Error> {
 //! // Once
 //! let context = unsafe { Context::new(instance, physical_device, device) }?;

@@ -30,7 +30,8 @@
 //! ```
 //!
 //! Then: record a frame with `arealight-vk`, or from C with `arealight-capi`; the table is
-//! [`LightTable::ggx`]. The repository's `docs/embed-rust.md` goes through it from a device to the first light.
+//! [`LightTable::ggx`]. The repository's `docs/embed-rust.md` goes through it from a device to the first
+//! light.
 //!
 //! # Conventions
 //! - SI radiometry, linear Rec. 709 colour. A light's radiance is W/(m² sr), constant over a one-sided

@@ -1,4 +1,5 @@
-//! Many lights in short form: by tiles it is the picture with all lights, but for what may be left out. `arealight bench lights` is the long form.
+//! Many lights in short form: by tiles it is the picture with all lights, but for what may be left out.
+//! `arealight bench lights` is the long form.
 
 use arealight_benches::many_lights::{Options, Way, run};
 use arealight_engine::host::testing::device_or_skip;

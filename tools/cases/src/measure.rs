@@ -174,8 +174,9 @@ mod tests {
     fn cases() -> Vec<Case> {
         let case = |name: &str, material: &str| {
             format!(
-                r#"{{"name": "{name}", "position": [0, 0, 0], "normal": [0, 0, 1], "view": [0, 0, 1], {material},
-                 "light": {{"type": "polygon", "radiance": [1, 1, 1], "vertices": [[0, 0, 1], [1, 0, 1], [0, 1, 1]]}}}}"#
+                r#"{{"name": "{name}", "position": [0, 0, 0], "normal": [0, 0, 1], "view": [0, 0, 1],
+                 {material}, "light": {{"type": "polygon", "radiance": [1, 1, 1],
+                 "vertices": [[0, 0, 1], [1, 0, 1], [0, 1, 1]]}}}}"#
             )
         };
         let texts = [

@@ -168,8 +168,8 @@ pub struct Texture {
 /// A layer of the light textures: a rectangle of a texture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneLightTexture {
-    /// Index into [`Scene::textures`]. Its image is within the limits of [`arealight::TexturePart`]; a larger one has
-    /// been scaled down.
+    /// Index into [`Scene::textures`]. Its image is within the limits of [`arealight::TexturePart`]; a larger
+    /// one has been scaled down.
     pub texture: u32,
     /// The corner that is (0, 0) in the layer, in the texture's coordinates. It may be outside of [0, 1],
     /// where the texture's wrap modes say what there is.

@@ -1,8 +1,8 @@
 //! `dependencies`: the product builds, and its tests run, without the laboratory.
 //!
 //! A dependency that a manifest under `crates/` states, for tests and build scripts too, is on a package
-//! under `crates/` or on one from outside this repository; and a crate that an engine takes depends on none that is
-//! for fitting a BRDF. A test that needs more lies in `tests/`, or with the tool that it needs.
+//! under `crates/` or on one from outside this repository; and a crate that an engine takes depends on none
+//! that is for fitting a BRDF. A test that needs more lies in `tests/`, or with the tool that it needs.
 
 use crate::TaskError;
 use crate::cargo::metadata;

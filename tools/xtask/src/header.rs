@@ -66,7 +66,10 @@ macro_rules! layouts {
         [$({
             // Does not compile where a field is left out
             let _ = |capi::$name { $($field: _),* }| ();
-            (stringify!($name), size_of::<capi::$name>(), vec![$((stringify!($field), offset_of!(capi::$name, $field))),*])
+            (
+                stringify!($name), size_of::<capi::$name>(),
+                vec![$((stringify!($field), offset_of!(capi::$name, $field))),*],
+            )
         }),*]
     };
 }
@@ -74,7 +77,8 @@ macro_rules! layouts {
 fn layouts() -> [Layout; 23] {
     layouts! {
         ArealightHost {
-            abi_version, api_version, get_instance_proc_addr, get_device_proc_addr, instance, physical_device, device,
+            abi_version, api_version, get_instance_proc_addr, get_device_proc_addr, instance,
+            physical_device, device,
             pipeline_cache,
         }
         ArealightTable { bytes, size, format, reserved }
@@ -84,27 +88,33 @@ fn layouts() -> [Layout; 23] {
         }
         ArealightPassOptions {
             surfaces, form_factor, horizon, specular_lobes, lobes, footprint, position, output,
-            radiance_images, radiance_format, g_buffer, tile_capacity, tile_cull_threshold, tile_least_quads, shadow_rays,
+            radiance_images, radiance_format, g_buffer, tile_capacity, tile_cull_threshold, tile_least_quads,
+            shadow_rays,
             camera, rectangle, texels_per_pixel, samples, stencil, light_counts, descriptors,
         }
-        ArealightSetLayout { layout, sampled_images, combined_image_samplers, storage_images, storage_buffers, dynamic_storage_buffers, reserved }
+        ArealightSetLayout {
+            layout, sampled_images, combined_image_samplers, storage_images, storage_buffers,
+            dynamic_storage_buffers, reserved
+        }
         ArealightLight {
-            name, kind, two_sided, radiance, textured, texture_layer, vertex_count, vertices, texture_coordinates,
-            hole_vertex_counts, face_vertex_counts, hole_count, face_count, center, axis_u, axis_v, radius, ends,
-            reserved,
+            name, kind, two_sided, radiance, textured, texture_layer, vertex_count, vertices,
+            texture_coordinates, hole_vertex_counts, face_vertex_counts, hole_count, face_count, center,
+            axis_u, axis_v, radius, ends, reserved,
         }
         ArealightReach { center, radius, low, high }
         ArealightLightSummary { light_count, quad_count, shape_count, effects }
         ArealightPackedLights { lights, vertices, shapes, lights_size, vertices_size, shapes_size, summary }
         ArealightImage { view, layout, reserved }
         ArealightResources {
-            lights, light_vertices, shapes, position, normal, base_color, specular, coat, sheen, anisotropy, film, light_textures,
+            lights, light_vertices, shapes, position, normal, base_color, specular, coat, sheen, anisotropy,
+            film, light_textures,
             radiance,
             glossy, lobe_horizons, tile_lists, shadow_picks, stencil, light_counts,
         }
         ArealightViewport { x, y, width, height, min_depth, max_depth }
         ArealightFrame {
-            width, height, camera, lights, seed, position_from_clip, tile_lists, viewport, offset, rows, stencil_compare_mask,
+            width, height, camera, lights, seed, position_from_clip, tile_lists, viewport, offset, rows,
+            stencil_compare_mask,
             stencil_reference, light_offsets,
         }
         ArealightTileMemory { size, usage, reserved }

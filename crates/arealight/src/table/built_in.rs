@@ -29,8 +29,8 @@ impl LightTable {
             .expect("the embedded table is valid, as a test shows")
     }
 
-    /// The numbers of all layers as they are stored, which [`LightTable::ggx`] is embedded as: the matrix, the
-    /// magnitude, and what there is of Schlick's matrix and of [`LobePairs`].
+    /// The numbers of all layers as they are stored, which [`LightTable::ggx`] is embedded as: the matrix,
+    /// the magnitude, and what there is of Schlick's matrix and of [`LobePairs`].
     pub fn numbers(&self) -> Vec<f32> {
         let schlick = self.schlick_matrix.iter().flatten();
         let matrices = self.pairs.iter().flat_map(|pairs| pairs.matrices.iter().flatten());

@@ -93,13 +93,11 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalQuad local) {
     float front = AREALIGHT_HAS_TWO_SIDED ? local.side : 1.0;
     vec3 vector = AREALIGHT_USES_DIFFERENCE
         ? arealight_far_quad_vector(space, local.center, local.quad, front)
-                                            : arealight_quad_vector(arealight_transformed(space, local.quad),
-                                                front);
+        : arealight_quad_vector(arealight_transformed(space, local.quad), front);
     if (AREALIGHT_CLIPS_AT_SURFACE && local.has_triangle) {
         vector += AREALIGHT_USES_DIFFERENCE
             ? arealight_far_quad_vector(space, local.center, local.triangle, front)
-                                            : arealight_quad_vector(arealight_transformed(space, local.triangle),
-                                                front);
+            : arealight_quad_vector(arealight_transformed(space, local.triangle), front);
     }
     return front * vector;
 }

@@ -364,7 +364,8 @@ fn a_light_that_float32_cannot_hold_costs_only_its_own_answer() {
     }
     let case = |name: &str, size: &str, radiance: &str| {
         format!(
-            r#"{{"name": "{name}", "position": [0, 0, 0], "normal": [0, 0, 1], "view": [0, 0, 1], "alpha": 0.5,
+            r#"{{"name": "{name}", "position": [0, 0, 0], "normal": [0, 0, 1], "view": [0, 0, 1],
+                "alpha": 0.5,
              "light": {{"type": "polygon", "radiance": [{radiance}, 1, 1], "two_sided": true,
              "vertices": [[0, 0, 1], [{size}, 0, 1], [0, {size}, 1]]}}}}"#
         )

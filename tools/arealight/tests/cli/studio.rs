@@ -26,10 +26,13 @@ fn model(folder: &Path, name: &str, scale: &str) -> PathBuf {
     bytes.extend(triangles.iter().flatten().flat_map(|i| i.to_le_bytes()));
     std::fs::write(folder.join("model.bin"), &bytes).unwrap();
     let path = folder.join(name);
-    let text = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"scale":[$,$,$]}],
-        "materials":[{"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.5,0.5,1],"metallicFactor":0,"roughnessFactor":0.6}}],
+    let text = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+        "nodes":[{"mesh":0,"scale":[$,$,$]}],
+        "materials":[{"pbrMetallicRoughness":
+            {"baseColorFactor":[0.5,0.5,0.5,1],"metallicFactor":0,"roughnessFactor":0.6}}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],
-        "accessors":[{"bufferView":0,"componentType":5126,"count":9,"type":"VEC3","min":[-2,0,-2],"max":[2,1.5,2]},
+        "accessors":[{"bufferView":0,"componentType":5126,"count":9,"type":"VEC3",
+            "min":[-2,0,-2],"max":[2,1.5,2]},
             {"bufferView":1,"componentType":5123,"count":18,"type":"SCALAR"}],
         "bufferViews":[{"buffer":0,"byteLength":108},{"buffer":0,"byteOffset":108,"byteLength":36}],
         "buffers":[{"uri":"model.bin","byteLength":144}]}"#;

@@ -87,7 +87,11 @@ fn compressed(index_size: usize, mode: &str) -> File {
     (root["bufferViews"], root["accessors"]) = (json!([]), json!([]));
     root["extensionsRequired"] = json!([NAME, "KHR_mesh_quantization"]);
     let mut file = File { root, buffer: vec![], missing: 0 };
-    let accessor = |component: u32, shape: &str, normalized: bool| json!({ "componentType": component, "type": shape, "normalized": normalized });
+    let accessor = |component: u32, shape: &str, normalized: bool| {
+        json!({
+            "componentType": component, "type": shape, "normalized": normalized
+        })
+    };
     let positions = encode_filter_exp(&shape.positions, 16, EncodeExpMode::SharedVector);
     let position = file.vertices(&positions, "EXPONENTIAL", accessor(5126, "VEC3", false));
     let normals: Vec<[f32; 4]> = shape.normals.iter().map(|[x, y, z]| [*x, *y, *z, 0.0]).collect();

@@ -55,7 +55,8 @@ fn file(level: Option<i32>) -> Writer {
         writer.root["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
         let primitive = &mut writer.root["meshes"][0]["primitives"][0];
         primitive["extensions"] = json!({ "KHR_draco_mesh_compression": {
-            "bufferView": view, "attributes": { "POSITION": position, "NORMAL": normal, "TEXCOORD_0": uv } } });
+            "bufferView": view, "attributes": { "POSITION": position, "NORMAL": normal,
+                "TEXCOORD_0": uv } } });
         let accessors = writer.root["accessors"].as_array_mut().unwrap();
         for accessor in accessors {
             accessor.as_object_mut().unwrap().remove("bufferView");

@@ -90,7 +90,10 @@ fn textures_may_be_webp_alone() {
 fn hidden_nodes_and_what_is_below_them_are_left_out() {
     let mut writer = emitter_with(&panel(1.0, 1.0), json!({}));
     writer.root["scenes"][0]["nodes"] = json!([1]);
-    let parent = |visible: bool| json!({ "children": [0], "extensions": { "KHR_node_visibility": { "visible": visible } } });
+    let parent = |visible: bool| {
+        let visibility = json!({ "visible": visible });
+        json!({ "children": [0], "extensions": { "KHR_node_visibility": visibility } })
+    };
     writer.push("nodes", parent(false));
     let bytes =
         |root: &Value, writer: &Writer| Writer { root: root.clone(), buffer: writer.buffer.clone() }.glb();

@@ -97,7 +97,8 @@ fn what_is_ignored_is_said() {
     writer.root["nodes"][0]["skin"] = json!(0);
     writer.root["extensionsUsed"] = json!(["EXT_lights_image_based"]);
     let times = writer.floats(&[[0.0_f32]]);
-    writer.root["animations"] = json!([{ "channels": [{ "sampler": 0, "target": { "node": 0, "path": "weights" } }],
+    writer.root["animations"] = json!([{ "channels": [{ "sampler": 0,
+        "target": { "node": 0, "path": "weights" } }],
                                          "samplers": [{ "input": times, "output": times }] }]);
     let expected = [
         "animations: 1 ignored; the scene is shown at rest",

@@ -124,10 +124,14 @@ fn float_words(writer: &Writer) -> Vec<usize> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 3000, failure_persistence: None, ..ProptestConfig::default()
+    })]
 
     #[test]
-    fn bytes_may_be_anything(damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..12)) {
+    fn bytes_may_be_anything(
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..12),
+    ) {
         let mut bytes = rich().glb();
         for (place, value) in damage {
             let place = place.index(bytes.len());
@@ -156,7 +160,9 @@ proptest! {
     }
 
     #[test]
-    fn fields_may_be_anything(damage in prop::collection::vec((any::<prop::sample::Index>(), poison()), 1..4)) {
+    fn fields_may_be_anything(
+        damage in prop::collection::vec((any::<prop::sample::Index>(), poison()), 1..4),
+    ) {
         let mut writer = rich();
         writer.root["buffers"] = json!([{ "byteLength": writer.buffer.len() }]);
         let mut found = Vec::new();

@@ -53,7 +53,8 @@ fn index_and_specular_make_the_dielectric() {
 }
 
 fn with_specular(values: &Value) -> Value {
-    json!({ "pbrMetallicRoughness": { "metallicFactor": 0 }, "extensions": { "KHR_materials_specular": values } })
+    json!({ "pbrMetallicRoughness": { "metallicFactor": 0 },
+        "extensions": { "KHR_materials_specular": values } })
 }
 
 #[test]
@@ -193,7 +194,8 @@ fn what_is_wrong_with_a_coat_is_named() {
     assert!(text.contains("material '#0': KHR_materials_clearcoat"), "{text}");
     let missing = message(json!({ "clearcoatFactor": 1, "clearcoatTexture": { "index": 7 } }));
     assert!(missing.contains("textures[7]"), "{missing}");
-    let transformed = json!({ "clearcoatFactor": 1, "clearcoatTexture": { "index": 0 }, "clearcoatRoughnessTexture": {
+    let transformed = json!({ "clearcoatFactor": 1, "clearcoatTexture": { "index": 0 },
+        "clearcoatRoughnessTexture": {
         "index": 0, "extensions": { "KHR_texture_transform": { "rotation": 1 } } } });
     assert_eq!(
         warnings(&load(textured(clearcoat(&transformed)))),

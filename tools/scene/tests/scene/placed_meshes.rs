@@ -106,7 +106,11 @@ fn instanced() -> Writer {
     let mut writer = emitter_with(&panel(2.0, 1.0), json!({ "translation": [0, 10, 0] }));
     let attributes = json!({
         "TRANSLATION": writer.floats(&[[0.0_f32, 0.0, 0.0], [5.0, 0.0, 0.0], [0.0, 0.0, 7.0]]),
-        "ROTATION": writer.floats(&[[0.0, 0.0, 0.0, 1.0], [0.0, FRAC_1_SQRT_2 as f32, 0.0, FRAC_1_SQRT_2 as f32], [0.0, 0.0, 0.0, 1.0]]),
+        "ROTATION": writer.floats(&[
+            [0.0, 0.0, 0.0, 1.0],
+            [0.0, FRAC_1_SQRT_2 as f32, 0.0, FRAC_1_SQRT_2 as f32],
+            [0.0, 0.0, 0.0, 1.0],
+        ]),
         "SCALE": writer.floats(&[[1.0_f32; 3], [1.0; 3], [2.0; 3]]),
     });
     writer.root["nodes"][0]["extensions"] =
@@ -150,7 +154,8 @@ fn instances_that_do_not_fit_are_refused() {
     // A count beside sixteen bytes of data
     let mut writer = instanced();
     let view = writer.view(&[0; 16]);
-    let sparse = json!({ "count": 1, "indices": { "bufferView": view, "componentType": 5121 }, "values": { "bufferView": view } });
+    let sparse = json!({ "count": 1, "indices": { "bufferView": view, "componentType": 5121 },
+        "values": { "bufferView": view } });
     let many = json!({ "componentType": 5126, "count": (1 << 20) + 1, "type": "VEC3", "sparse": sparse });
     let many = writer.push("accessors", many);
     writer.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] =
