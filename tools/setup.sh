@@ -90,7 +90,7 @@ if [[ "$mode" == test ]]; then
     need make "builds what CMake says" has_program make
     need chromium "runs the exported WGSL" has_program chromium
     need python3 "tests the Python module, and what of the Blender add-on needs no Blender" has_program python3
-    need python3-matplotlib "draws what the Python module's notebook shows" has_matplotlib
+    need python3-matplotlib "draws the charts, the page of the bench, and pictures of tables" has_matplotlib
 fi
 
 if [[ ${#missing[@]} -eq 0 ]]; then

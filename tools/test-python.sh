@@ -23,3 +23,4 @@ ln -s "$(realpath "${CARGO_TARGET_DIR:-target}/debug/libarealight_python.so")" "
 export PYTHONPATH="$folder" MPLCONFIGDIR="$folder"
 "$python" -B tools/python/tests/test_arealight.py
 "$python" -B tools/python/run_notebook.py tools/python/notebooks/fit_a_brdf.ipynb
+"$python" -B tools/plots/test_plots.py

@@ -24,15 +24,12 @@
 //! | [`sections`] | the sections of documents that commands write |
 //! | [`report`] | what came of it: as text, as Markdown |
 //! | [`pictures`] | pictures as light textures of an engine |
-//! | [`svg`] | drawing charts |
-//! | [`figures`] | the drawings of the documents |
 //! | [`start`] | what a benchmark begins with |
 //!
 //! `arealight bench` is the way to run them; `cargo bench` has those of time.
 
 pub mod compiled;
 pub mod cost;
-pub mod figures;
 pub mod footprints;
 pub mod furnace;
 pub mod kernel;
@@ -54,7 +51,6 @@ pub mod shape_stability;
 pub mod shapes;
 pub mod stability;
 pub mod start;
-pub mod svg;
 mod table;
 pub mod textures;
 pub mod tiles;

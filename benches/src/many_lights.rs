@@ -2,7 +2,6 @@
 
 use crate::ladder::frame::processors;
 use crate::ladder::{number, percent};
-use crate::svg::{Axis, Drawing, FILE_STYLE, grid, number_short};
 use crate::table::Table;
 use crate::textures::{clocked, is_software};
 use crate::tiles::{difference, floor, lamps};
@@ -266,66 +265,6 @@ impl ManyLights {
             self.table().to_markdown()
         )
     }
-
-    /// Time and error over the number of lamps.
-    pub fn to_svg(&self) -> String {
-        const SIZE: [f64; 2] = [960.0, 400.0];
-        let mut drawing = Drawing::new(
-            SIZE[0],
-            SIZE[1],
-            "Time and error over the number of lights, with all of them and by tiles",
-        );
-        drawing.bar("paper", [0.0, 0.0], SIZE);
-        let device = self.device.split(" (").next().unwrap_or_default();
-        let time = format!("milliseconds on {device}, over lamps");
-        self.panel(&mut drawing, [60.0, 30.0, 390.0, 340.0], &time, &number_short, |row| row.milliseconds);
-        let error = "difference from all lights, RMSE over mean, over lamps";
-        self.panel(&mut drawing, [540.0, 30.0, 830.0, 340.0], error, &percent, |row| row.rmse);
-        drawing.into_file(FILE_STYLE)
-    }
-
-    /// A chart of a value of each way that has one, with their names at the lines' ends.
-    fn panel(
-        &self,
-        drawing: &mut Drawing,
-        bounds: [f64; 4],
-        title: &str,
-        name: &dyn Fn(f64) -> String,
-        value: impl Fn(&Row) -> f64,
-    ) {
-        let rows = || self.rows.iter().filter(|row| value(row) > 0.0);
-        let x = Axis::over(rows().map(|row| row.lamps as f64), bounds[0], bounds[2]);
-        let y = Axis::over(rows().map(&value), bounds[3], bounds[1]);
-        grid(drawing, &x, &y, bounds, name);
-        drawing.text("", "middle", [f64::midpoint(bounds[0], bounds[2]), bounds[3] + 40.0], title);
-        let mut ends: Vec<(f64, f64, String)> = vec![];
-        for way in WAYS {
-            let class = match way {
-                Way::All => "noise",
-                Way::Tiles(_) => "ours",
-            };
-            let points: Vec<[f64; 2]> = rows()
-                .filter(|row| row.way == way.name())
-                .map(|row| [x.at(row.lamps as f64), y.at(value(row))])
-                .collect();
-            drawing.path(&format!("line-{class}"), &points);
-            for (point, row) in points.iter().zip(rows().filter(|row| row.way == way.name())) {
-                drawing.dot(
-                    class,
-                    *point,
-                    &format!("{} lamps, {}: {}", row.lamps, row.way, name(value(row))),
-                );
-            }
-            ends.extend(points.last().map(|[x, y]| (*x, *y, way.name())));
-        }
-        // Names beside the ends, a line apart at least
-        ends.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let mut lowest = f64::NEG_INFINITY;
-        for (x, y, name) in ends {
-            lowest = y.max(lowest + 14.0);
-            drawing.text("", "start", [x + 10.0, lowest + 4.0], &name);
-        }
-    }
 }
 
 #[cfg(test)]
@@ -347,15 +286,11 @@ mod tests {
     }
 
     #[test]
-    fn tables_and_charts_have_every_way() {
+    fn tables_have_every_way() {
         let found = found();
-        let (text, svg) = (found.to_markdown("command"), found.to_svg());
+        let text = found.to_markdown("command");
         for way in WAYS {
-            assert!(
-                text.contains(&format!("| {} |", way.name())) && svg.contains(&way.name()),
-                "{}",
-                way.name()
-            );
+            assert!(text.contains(&format!("| {} |", way.name())), "{text}");
         }
         assert!(text.contains("| 100 | all | 2.50 | 100 |"), "{text}");
         assert!(text.contains("| 12 | 1.20 % | 3.00 % |"), "{text}");

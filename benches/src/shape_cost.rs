@@ -6,7 +6,6 @@
 
 use crate::cost::quantile;
 use crate::shapes::{SHAPES, ShapeArguments, ShapeFunction, ellipse_arguments, tube_arguments};
-use crate::svg::{Axis, Drawing, FILE_STYLE, Labels, grid, label};
 use arealight_cases::hard::ellipse::Family;
 use arealight_engine::host::{Buffer, Host};
 use arealight_engine::{BoundSet, EngineError, Passes, SharedPass};
@@ -232,63 +231,4 @@ pub fn markdown(costs: &[ShapeCost]) -> String {
         let _ = writeln!(text, "| {} | {:.2} | {low:.2} to {high:.2} | {error}", cost.method, cost.ratio);
     }
     text
-}
-
-/// Error against time of the ways to a disk, both logarithmic, as a file in SVG: the library's in blue,
-/// yardsticks in orange.
-pub fn chart(costs: &[ShapeCost], device: &str) -> String {
-    let (width, height) = (860.0, 440.0);
-    let bounds = [64.0, 34.0, width - 8.0, height - 46.0];
-    let judged: Vec<(&ShapeCost, ShapeError)> =
-        costs.iter().filter_map(|cost| Some((cost, cost.error?))).collect();
-    let x = Axis::over(judged.iter().map(|(cost, _)| cost.ratio), bounds[0], bounds[2]);
-    let y = Axis::over(judged.iter().map(|(_, error)| error.rms), bounds[3], bounds[1]);
-
-    let title = format!("Error against time of disks that cross the horizon: {device}");
-    let mut drawing = Drawing::new(width, height, &title);
-    drawing.bar("paper", [0.0, 0.0], [width, height]);
-    grid(&mut drawing, &x, &y, bounds, &|value| format!("{value:e}"));
-    drawing.text("", "start", [bounds[0], 20.0], &title);
-    drawing.text("axis", "middle", [0.5 * (bounds[0] + bounds[2]), height - 6.0], "time; exact disk = 1");
-    drawing.upwards([14.0, 0.5 * (bounds[1] + bounds[3])], "RMS error of the form factor");
-
-    // Dots first, that no label covers one
-    let mut labels = Labels::default();
-    let place = |(cost, error): &(&ShapeCost, ShapeError)| [x.at(cost.ratio), y.at(error.rms)];
-    for method in &judged {
-        labels.keep_free(place(method));
-        let (cost, error) = method;
-        let class = if is_ours(cost.method) { "ours" } else { "theirs" };
-        let title = format!("{}: error {:.0e}, time {:.2}", cost.method, error.rms, cost.ratio);
-        drawing.dot(class, place(method), &title);
-    }
-    for method in &judged {
-        label(&mut drawing, &mut labels, place(method), method.0.method, bounds);
-    }
-    drawing.into_file(FILE_STYLE)
-}
-
-/// Whether a method is the library's, as it is there.
-fn is_ours(name: &str) -> bool {
-    let method = METHODS.iter().find(|method| method.name == name);
-    method.is_some_and(|method| method.function == ShapeFunction::Ellipse)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_chart_has_what_was_judged_and_nothing_else() {
-        let cost = |method, error| ShapeCost { method, ratio: 2.0, quartiles: [1.0, 3.0], error };
-        let error = ShapeError { rms: 1e-3, largest: 1e-2, not_finite: 0 };
-        let costs = [
-            cost("an empty loop", None),
-            cost("disk, exact", Some(error)),
-            cost("polygon of 8", Some(error)),
-        ];
-        let chart = chart(&costs, "a device");
-        assert_eq!((chart.matches("<circle").count(), chart.matches("class=\"ours\"").count()), (2, 1));
-        assert!(chart.starts_with("<svg xmlns") && !chart.contains("an empty loop:"));
-    }
 }

@@ -142,7 +142,7 @@ impl Ladder {
     }
 
     /// What the numbers are, in words.
-    fn legend(&self) -> String {
+    pub fn legend(&self) -> String {
         let clock = if self.software {
             "processor time of all threads over their number: what the clock would say on an idle machine"
         } else {

@@ -15,7 +15,6 @@ pub type Colour = [u8; 3];
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
     Left,
-    Centre,
     Right,
 }
 
@@ -53,30 +52,6 @@ impl Canvas {
         }
     }
 
-    /// Fills a disc with the colours of a function of the place within it, in [-1, 1]² with y upwards, and
-    /// draws its rim.
-    pub fn disc(
-        &mut self,
-        centre: (i32, i32),
-        radius: i32,
-        rim: Colour,
-        colour: impl Fn(f64, f64) -> Colour,
-    ) {
-        let reach = f64::from(radius);
-        for dy in -radius..=radius {
-            for dx in -radius..=radius {
-                let (x, y) = (f64::from(dx), f64::from(dy));
-                // Soften the rim over one pixel
-                let within = reach - (x * x + y * y).sqrt();
-                if within > -0.5 {
-                    let (x, y) = (x / reach, -y / reach);
-                    self.blend(centre.0 + dx, centre.1 + dy, colour(x, y), within + 0.5);
-                    self.blend(centre.0 + dx, centre.1 + dy, rim, 0.8 - within.abs());
-                }
-            }
-        }
-    }
-
     /// Fills a rectangle with the colours of a function of the place within it, in pixels.
     pub fn rectangle(&mut self, corner: (i32, i32), size: (i32, i32), colour: impl Fn(i32, i32) -> Colour) {
         for (x, y) in (0..size.1).flat_map(|y| (0..size.0).map(move |x| (x, y))) {
@@ -88,14 +63,6 @@ impl Canvas {
     pub fn text(&mut self, (x, y): (i32, i32), text: &str, align: Align, colour: Colour) {
         write_line(text, align, |along, down, coverage| {
             self.blend(x + along, y + down, colour, coverage);
-        });
-    }
-
-    /// Writes a line of text from the bottom to the top, whose left is at `x`; aligned to the left is above
-    /// `y`.
-    pub fn text_upwards(&mut self, (x, y): (i32, i32), text: &str, align: Align, colour: Colour) {
-        write_line(text, align, |along, down, coverage| {
-            self.blend(x + down, y - along, colour, coverage);
         });
     }
 
@@ -128,7 +95,6 @@ fn write_line(text: &str, align: Align, mut dot: impl FnMut(i32, i32, f64)) {
     let width = advance * text.chars().count() as i32;
     let mut left = match align {
         Align::Left => 0,
-        Align::Centre => -width / 2,
         Align::Right => -width,
     };
     for character in text.chars() {
@@ -153,7 +119,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         let mut canvas = Canvas::new(40, 30, [255; 3]);
-        canvas.disc((15, 15), 10, [1, 2, 3], |x, _| if x < 0.0 { [255, 0, 0] } else { [0, 0, 255] });
+        canvas.rectangle((5, 5), (20, 20), |x, _| if x < 10 { [255, 0, 0] } else { [0, 0, 255] });
         canvas.save_png(&path).unwrap();
         let picture = image::open(&path).unwrap().to_rgb8();
         assert_eq!(picture.dimensions(), (40, 30));
@@ -166,7 +132,7 @@ mod tests {
     fn what_is_outside_is_lost() {
         let mut canvas = Canvas::new(8, 8, [0; 3]);
         canvas.text((-100, 3), "outside", Align::Right, [255; 3]);
-        canvas.disc((0, 0), 3, [9; 3], |_, _| [9; 3]);
+        canvas.rectangle((-2, -2), (4, 4), |_, _| [9; 3]);
         canvas.rectangle((6, 6), (5, 5), |_, _| [7; 3]);
         assert_eq!(canvas.pixels[..3], [9; 3]);
         assert_eq!(canvas.pixels[canvas.pixels.len() - 3..], [7; 3]);
@@ -182,19 +148,5 @@ mod tests {
             (all[0], all[all.len() - 1])
         };
         assert!(columns(Align::Left).0 >= 30 && columns(Align::Right).1 < 30);
-        let (first, last) = columns(Align::Centre);
-        assert!(first < 30 && last > 30);
-    }
-
-    #[test]
-    fn text_upwards_is_text_turned_to_the_left() {
-        let mut upright = Canvas::new(60, 60, [0; 3]);
-        upright.text((20, 30), "Lg", Align::Left, [255; 3]);
-        let mut turned = Canvas::new(60, 60, [0; 3]);
-        // A quarter turn takes (x, y) to (y, 59 - x)
-        turned.text_upwards((30, 59 - 20), "Lg", Align::Left, [255; 3]);
-        let at = |canvas: &Canvas, x: usize, y: usize| canvas.pixels[3 * (y * 60 + x)];
-        assert!((0..3600).all(|i| at(&upright, i % 60, i / 60) == at(&turned, i / 60, 59 - i % 60)));
-        assert_ne!(upright.pixels, turned.pixels);
     }
 }

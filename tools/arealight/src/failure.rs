@@ -28,9 +28,9 @@ pub enum Failure {
     /// No Vulkan, no device, a missing feature, or a device that was lost. Exit code 4.
     #[error("{0}")]
     Device(String),
-    /// No driver whose compiler can be asked, or not the version that a file is of. Exit code 6.
+    /// No driver whose compiler can be asked, or not the version that a file is of; or no matplotlib. Exit code 6.
     #[error("{0}")]
-    NoCompiler(String),
+    NoProgram(String),
     /// An output file cannot be written. Exit code 5.
     #[error("{}: cannot write: {message}", path.display())]
     Output {
@@ -49,7 +49,7 @@ impl Failure {
             Self::Input { .. } | Self::Scene(_) => 3,
             Self::Device(_) => 4,
             Self::Output { .. } => 5,
-            Self::NoCompiler(_) => 6,
+            Self::NoProgram(_) => 6,
         })
     }
 

@@ -9,6 +9,7 @@ mod gpu;
 mod lights;
 mod output;
 mod picture;
+mod plots;
 mod progress;
 mod quality;
 mod shadows;
@@ -47,7 +48,7 @@ Exit codes: 0 success, 1 an answer or a picture is farther from the truth than -
 level falls short of its promises in bench stability or misses a bar in bench textures, \
 or a kernel takes more than bench compiled --check allows, \
 2 wrong arguments, 3 a bad input file, 4 no usable Vulkan device, 5 an output file cannot be written, \
-6 no compiler for bench compiled.";
+6 no compiler for bench compiled, or no matplotlib for charts and pictures of tables.";
 
 #[derive(Subcommand)]
 enum Command {

@@ -1,7 +1,7 @@
 //! `arealight compare`
 
 use crate::canvas::Canvas;
-use crate::commands::inspect::colour::diverging;
+use crate::differences::diverging;
 use crate::failure::Failure;
 use crate::output::{self, print};
 use arealight_cases::images::load_image;

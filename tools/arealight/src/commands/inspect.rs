@@ -1,7 +1,8 @@
 //! `arealight inspect`
 
 use crate::failure::Failure;
-use crate::output::{self, print};
+use crate::output::print;
+use crate::plots::{self, Kind};
 use crate::progress;
 use crate::quality::LobeCount;
 use arealight::{LightTable, SpecularLobes};
@@ -15,15 +16,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 mod channels;
-pub mod colour;
-mod entries;
-mod error_maps;
 mod errors;
 mod fit_error;
 mod lobes;
-mod panel;
 mod pyramid;
-mod pyramid_picture;
 
 /// Describe a light table, and draw its lobes and the BRDF's, its errors, or its entries; or what a light's
 /// texture becomes.
@@ -85,12 +81,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let errors =
         arguments.errors.as_ref().map(|others| measure(&table, others, arguments.quads)).transpose()?;
     if let Some(path) = &arguments.output {
-        let picture = match &errors {
-            Some(maps) => error_maps::draw(maps, arguments.quads),
-            None if arguments.entries => entries::draw(&table, &channels),
-            None => lobes::draw(&table, arguments.material()),
+        let (kind, found) = match &errors {
+            Some(maps) => (Kind::Errors, errors::found(maps, arguments.quads)),
+            None if arguments.entries => (Kind::Entries, channels::found(&table, &channels)),
+            None => (Kind::Lobes, lobes::found(&table, arguments.material())),
         };
-        picture.save_png(path)?;
+        plots::draw(kind, &found, path)?;
         eprintln!("wrote {}", path.display());
     }
     let summary = Summary {
@@ -107,7 +103,7 @@ fn run_pyramid(path: &Path, arguments: &Arguments) -> Result<ExitCode, Failure> 
     arguments.check_output()?;
     let pyramid = pyramid::make(path, arguments.layer, arguments.device.as_deref())?;
     if let Some(output) = &arguments.output {
-        pyramid_picture::draw(&pyramid).save_png(output)?;
+        plots::draw(Kind::Pyramid, &pyramid.found(), output)?;
         eprintln!("wrote {}", output.display());
     }
     print(&if arguments.json { pyramid.to_json() } else { pyramid.to_text() })
@@ -118,7 +114,7 @@ impl Arguments {
     fn check_output(&self) -> Result<(), Failure> {
         let Some(path) = &self.output else { return Ok(()) };
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
-            return output::check(path);
+            return plots::check(path);
         }
         let message = format!("{}: the file's name must end in .png", path.display());
         Err(Failure::Argument { argument: "--output", message })

@@ -96,7 +96,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let driver = driver_file().ok_or_else(|| {
         let message = "RADV, Mesa's driver of Radeon cards, is not installed: on Debian, apt-get install \
         mesa-vulkan-drivers";
-        Failure::NoCompiler(message.to_owned())
+        Failure::NoProgram(message.to_owned())
     })?;
     if arguments.model {
         let found = driver::compile(&arguments.family, &["--model"], &wanted, &driver)?;
@@ -122,7 +122,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let printed = print(&if arguments.json { json } else { found.to_text() })?;
     let Some(file) = file else { return Ok(printed) };
     let check = Check::new(&found, &file, arguments.only.is_none())
-        .map_err(|error| Failure::NoCompiler(error.to_string()))?;
+        .map_err(|error| Failure::NoProgram(error.to_string()))?;
     eprint!("{}", verdict::for_stderr(&check.to_text(UPDATE)));
     Ok(if check.passes() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

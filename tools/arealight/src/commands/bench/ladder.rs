@@ -1,9 +1,9 @@
 //! `arealight bench` without a subcommand
 
-use super::page::page;
-use super::{Ends, write};
+use super::{Ends, page};
 use crate::failure::Failure;
-use crate::{output, progress};
+use crate::plots::{self, Kind};
+use crate::progress;
 use arealight_benches::ladder::{self, Options};
 use arealight_scene::Scene;
 use std::fmt::Write as _;
@@ -63,7 +63,7 @@ pub fn run(arguments: &LadderArguments) -> Result<ExitCode, Failure> {
     let options = arguments.options();
     let scene = Scene::from_bytes(include_bytes!("../../../../../scenes/demo.glb"), "demo")
         .map_err(|error| Failure::input("demo (built in)", error))?;
-    arguments.html.as_deref().map_or(Ok(()), output::check)?;
+    arguments.html.as_deref().map_or(Ok(()), plots::check)?;
     let host = arguments.ends.host()?;
 
     let bar = progress::bar(options.steps(), "steps");
@@ -73,7 +73,7 @@ pub fn run(arguments: &LadderArguments) -> Result<ExitCode, Failure> {
     found.command = arguments.command();
 
     if let Some(path) = &arguments.html {
-        write(path, &page(&found, &pictures)?)?;
+        plots::draw(Kind::Report, &page::found(&found, &pictures)?, path)?;
     }
     arguments.ends.report(&found, &found.to_markdown(), &found.to_text())?;
     Ok(ExitCode::SUCCESS)

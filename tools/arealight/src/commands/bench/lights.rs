@@ -1,9 +1,10 @@
 //! `arealight bench lights`
 
-use super::{Ends, document, write};
+use super::{Ends, document};
 use crate::commands::render::parse_size;
 use crate::failure::Failure;
-use crate::{output, progress};
+use crate::plots::{self, Kind};
+use crate::progress;
 use arealight_benches::many_lights::{self, Options};
 use arealight_benches::sections::Markers;
 use std::path::PathBuf;
@@ -45,7 +46,7 @@ fn parse_roughness(text: &str) -> Result<f32, String> {
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let Arguments { lamps, size, roughness, rounds, svg, ends } = arguments;
-    svg.as_deref().map_or(Ok(()), output::check)?;
+    svg.as_deref().map_or(Ok(()), plots::check)?;
     let host = ends.host()?;
     let options = Options {
         counts: lamps.clone(),
@@ -63,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         .to_markdown("arealight bench lights --markdown docs/data/tiles.md --svg docs/images/lights.svg");
     let whole = ends.markdown.as_deref().map(|path| document(path, Markers::LIGHTS, &section));
     if let Some(path) = svg {
-        write(path, &found.to_svg())?;
+        plots::draw(Kind::Lights, &serde_json::to_value(&found).unwrap_or_default(), path)?;
     }
     ends.report(&found, &whole.unwrap_or_default(), &found.to_text())?;
     Ok(ExitCode::SUCCESS)

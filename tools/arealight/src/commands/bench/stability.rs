@@ -1,9 +1,9 @@
 //! `arealight bench stability`
 
-use super::{Ends, write};
+use super::Ends;
 use crate::failure::Failure;
-use crate::{output, progress};
-use arealight_benches::figures;
+use crate::plots::{self, Kind};
+use crate::progress;
 use arealight_benches::method::{METHODS, Method};
 use arealight_benches::shape_stability;
 use arealight_benches::stability::{self, Options};
@@ -70,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         families: chosen(&arguments.family, FAMILIES),
         methods: chosen(&arguments.level, METHODS),
     };
-    arguments.svg.as_deref().map_or(Ok(()), output::check)?;
+    arguments.svg.as_deref().map_or(Ok(()), plots::check)?;
     let host = arguments.ends.host()?;
 
     let bar = progress::bar(options.samples * options.families.len() as u64, "polygons");
@@ -79,7 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
 
     if let Some(path) = &arguments.svg {
-        write(path, &figures::stability(&found))?;
+        plots::draw(Kind::Stability, &serde_json::to_value(&found).unwrap_or_default(), path)?;
     }
     arguments.ends.report(&found, &found.to_markdown(), &found.to_text(progress::is_verbose()))?;
     Ok(if found.shortfalls().next().is_some() { ExitCode::FAILURE } else { ExitCode::SUCCESS })

@@ -1,6 +1,8 @@
 //! The channels of a table: what their texels span, and how smooth they are.
 
+use crate::plots::floats;
 use arealight::LightTable;
+use serde_json::{Value, json};
 
 /// The entries of a matrix texel.
 const ENTRIES: [&str; 4] = ["q00", "q02", "q20", "q22"];
@@ -71,6 +73,24 @@ impl Channel {
     pub fn at(&self, (x, y): (usize, usize)) -> f32 {
         self.values[y * self.size + x]
     }
+}
+
+/// The channels of a table, for a picture.
+pub fn found(table: &LightTable, channels: &[Channel]) -> Value {
+    let (brdf, size) = (&table.description().brdf, table.size());
+    let channel = |channel: &Channel| {
+        json!({
+            "layer": channel.layer,
+            "channel": channel.name,
+            "step": channel.step.difference,
+            "values": floats(channel.values.iter().copied()),
+        })
+    };
+    json!({
+        "title": format!("{brdf}, {size} x {size} nodes: what they hold, by roughness and view angle"),
+        "size": size,
+        "channels": channels.iter().map(channel).collect::<Value>(),
+    })
 }
 
 #[cfg(test)]

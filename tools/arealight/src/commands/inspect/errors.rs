@@ -1,11 +1,13 @@
 //! How far the integrals of tables are from the truth, over roughness and view angle.
 
+use crate::plots::floats;
 use arealight::table::mirror_frame;
 use arealight::{Horizon, LightTable, SpecularLobes, TableSample};
 use arealight_fit::report::{Case, Family, Level, Quad, integrate, measure_lookup, random_quads};
 use arealight_oracle::formula::ggx_formula;
 use glam::{DQuat, DVec3};
 use rayon::prelude::*;
+use serde_json::{Value, json};
 
 /// Cells a side of a map.
 pub const CELLS: usize = 32;
@@ -71,6 +73,29 @@ impl ErrorMap {
     pub fn worst(&self) -> (usize, f64) {
         self.cells.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default()
     }
+}
+
+/// The maps, for a picture.
+pub fn found(maps: &[ErrorMap], quads: u16) -> Value {
+    let map = |map: &ErrorMap| {
+        json!({
+            "of": map.name,
+            "specular_lobes": map.level(),
+            "f0": map.f0,
+            "mean": map.mean(),
+            "most": map.worst().1,
+            "cells": floats(map.cells.iter().map(|error| *error as f32)),
+        })
+    };
+    json!({
+        "title": format!("mean absolute error over {quads} quads of unit radiance in each cell, clipped in cosine space"),
+        "note": "of the reflected radiance; a third of the lights about the mirror direction, a third anywhere, \
+                 a third across the horizon",
+        "cells_a_side": CELLS,
+        "roughness": ROUGHNESS,
+        "view": VIEW,
+        "maps": maps.iter().map(map).collect::<Value>(),
+    })
 }
 
 /// The roughness and the view angle in degrees at the middle of a cell.

@@ -2,6 +2,8 @@
 
 use crate::failure::Failure;
 use crate::gpu;
+use crate::picture::srgb_from_linear;
+use crate::plots::bytes_of;
 use arealight::TexturePart;
 use arealight::pyramid::PyramidSize;
 use arealight_engine::{Engine, EngineError, SourceImage, SourceTexels};
@@ -33,18 +35,10 @@ pub struct Level {
 }
 
 impl Level {
-    pub fn texel(&self, x: u32, y: u32) -> DVec3 {
-        let [r, g, b, _] = self.texels[(y * self.extent[0] + x) as usize].map(f64::from);
-        DVec3::new(r, g, b)
-    }
-
     /// The mean: that of the image, on every level.
     fn mean(&self) -> DVec3 {
-        let sum: DVec3 = (0..self.extent[1])
-            .flat_map(|y| (0..self.extent[0]).map(move |x| (x, y)))
-            .map(|(x, y)| self.texel(x, y))
-            .sum();
-        sum / self.texels.len() as f64
+        let texels = self.texels.iter().map(|[r, g, b, _]| DVec3::new((*r).into(), (*g).into(), (*b).into()));
+        texels.sum::<DVec3>() / self.texels.len() as f64
     }
 }
 
@@ -177,6 +171,24 @@ impl Pyramid {
         level.blur / (width * height).sqrt()
     }
 
+    /// The levels, for a picture: what makes the brightest texel white is said where it is not 1.
+    pub fn found(&self) -> Value {
+        let texels = self.levels[0].texels.iter().flat_map(|texel| &texel[..3]);
+        let peak = texels.fold(1.0_f32, |peak, channel| peak.max(*channel));
+        let white = if peak > 1.0 { format!("; white is {peak:.3}") } else { String::new() };
+        let [width, height] = self.size.extent(0);
+        let level = |level: &Level| {
+            let channels = level.texels.iter().flat_map(|[r, g, b, _]| [r, g, b]);
+            let bytes: Vec<u8> = channels.map(|channel| srgb_from_linear(channel / peak)).collect();
+            json!({ "size": level.extent, "blur": level.blur, "share": self.share(level), "srgb": bytes_of(&bytes) })
+        };
+        json!({
+            "title": format!("{}\n{width} x {height} texels{white}", self.name),
+            "size": [width, height],
+            "levels": self.levels.iter().map(level).collect::<Value>(),
+        })
+    }
+
     pub fn to_text(&self) -> String {
         let [width, height] = self.size.extent(0);
         let mut text =
@@ -212,5 +224,32 @@ impl Pyramid {
             "levels": self.levels.iter().map(level).collect::<Value>(),
         });
         format!("{summary:#}\n")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bright_images_are_exposed_to_their_peak() {
+        let size = PyramidSize::new(128, 64).unwrap();
+        let level = |peak: f32| {
+            let mut texels = vec![[0.0, 0.0, 0.0, 99.0]; 128 * 64];
+            texels[7] = [0.5, peak, 0.0, 99.0];
+            Pyramid {
+                name: "a".into(),
+                size,
+                levels: vec![Level { extent: size.extent(0), blur: 0.0, texels }],
+            }
+        };
+        let (bright, other) = (level(16.0).found(), level(0.5).found());
+        assert_eq!(bright["title"], "a\n128 x 64 texels; white is 16.000");
+        assert_eq!(other["title"], "a\n128 x 64 texels");
+        let mut bytes = vec![0; 3 * 128 * 64];
+        bytes[21..24].copy_from_slice(&[0.5 / 16.0, 1.0, 0.0].map(srgb_from_linear));
+        assert_eq!(bright["levels"][0]["srgb"], bytes_of(&bytes));
+        bytes[21..24].copy_from_slice(&[0.5, 0.5, 0.0].map(srgb_from_linear));
+        assert_eq!(other["levels"][0]["srgb"], bytes_of(&bytes));
     }
 }
