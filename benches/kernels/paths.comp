@@ -9,9 +9,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-#define LIGHTS_BINDING 1
-#define G_BUFFER_BINDING 3
-#define LIGHT_TEXTURES_BINDING 8
+#include "bindings.glsl"
 const bool HAS_SPECULAR_INPUT = true;
 #define AREALIGHT_LIGHT_TEXTURES 1
 #define AREALIGHT_TWO_SIDED 1
@@ -21,7 +19,7 @@ const bool HAS_SPECULAR_INPUT = true;
 #include "polygon_lights.glsl"
 #include "g_buffer.glsl"
 
-layout(set = 0, binding = 7, rgba32f) uniform writeonly image2D radiance_image;
+layout(set = 0, binding = RADIANCE_BINDING, rgba32f) uniform writeonly image2D radiance_image;
 
 layout(push_constant, std430) uniform ShadeConstants {
     mat4 position_from_clip;

@@ -15,9 +15,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
 layout(constant_id = 1) const int METHOD = 0;
 
-#define LIGHTS_BINDING 1
-#define G_BUFFER_BINDING 3
-#define LIGHT_TEXTURES_BINDING 8
+#include "bindings.glsl"
 const uint EFFECT_TWO_SIDED = 4u;
 const uint EFFECT_SPECULAR_INPUT = 8u;
 const uint EFFECT_POLYGON = 16u;
@@ -29,7 +27,7 @@ const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 #include "polygon_lights.glsl"
 #include "g_buffer.glsl"
 
-layout(set = 0, binding = 7, rgba32f) uniform image2D radiance_image;
+layout(set = 0, binding = RADIANCE_BINDING, rgba32f) uniform image2D radiance_image;
 
 layout(push_constant, std430) uniform ShadeConstants {
     mat4 position_from_clip;

@@ -5,7 +5,7 @@
 
 use crate::school::School;
 use arealight::FormFactor;
-use arealight::kernels::{Access, Binding, Kernel};
+use arealight::kernels::Kernel;
 use arealight_engine::host::{Buffer, Host};
 use arealight_engine::{BoundSet, EngineError, Passes, SharedPass};
 use arealight_vk::Resource;
@@ -14,17 +14,8 @@ use std::fmt::Write as _;
 use std::time::Instant;
 
 /// A quad's form factor many times over.
-pub static FORM_FACTOR_COST: Kernel = Kernel {
-    name: "form_factor_cost",
-    spirv: include_bytes!("../spirv/form_factor_cost.spv"),
-    local_size: [64, 1, 1],
-    push_constant_size: 0,
-    bindings: &[
-        Binding::storage_buffer("vertices", Access::Read, "vec4[]: four vertices per invocation, 0"),
-        Binding::storage_buffer("results", Access::Write, "float[]: the mean form factor of an invocation"),
-    ],
-    constants: &[0, 1],
-};
+pub static FORM_FACTOR_COST: Kernel =
+    Kernel::new("form_factor_cost", include_bytes!("../spirv/form_factor_cost.spv"));
 
 /// What is measured.
 #[derive(Debug, Clone, Copy)]

@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 /// The eval kernel with the lookup of Heitz et al. 2016.
 pub static TEXTURED_ARTICLE: Kernel =
-    EVAL.like("textured_article", include_bytes!("../spirv/textured_article.spv"));
+    Kernel::of_pass("textured_article", include_bytes!("../spirv/textured_article.spv"), &[&EVAL]);
 
 /// A way to look up a light's texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

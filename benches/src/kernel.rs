@@ -1,7 +1,7 @@
 //! The kernel `form_factor`: hard cases go in, the bits of their form factors come out.
 
 use crate::method::Method;
-use arealight::kernels::{Access, Binding, Kernel};
+use arealight::kernels::Kernel;
 use arealight_cases::hard::HardCase;
 use arealight_engine::host::Host;
 use arealight_engine::{EngineError, Passes, SharedPass};
@@ -33,18 +33,7 @@ struct FormFactorConstants {
 pub const METHOD: u32 = 0;
 
 /// Form factors of a list of polygons by one method.
-pub static FORM_FACTOR: Kernel = Kernel {
-    name: "form_factor",
-    spirv: include_bytes!("../spirv/form_factor.spv"),
-    local_size: [64, 1, 1],
-    push_constant_size: size_of::<FormFactorConstants>() as u32,
-    bindings: &[
-        Binding::storage_buffer("polygons", Access::Read, "GpuHardPolygon[]"),
-        Binding::storage_buffer("offsets", Access::Read, "vec4[]: offset from the polygon's anchor, 0"),
-        Binding::storage_buffer("results", Access::Write, "float[]: one form factor a polygon"),
-    ],
-    constants: &[METHOD],
-};
+pub static FORM_FACTOR: Kernel = Kernel::new("form_factor", include_bytes!("../spirv/form_factor.spv"));
 
 /// The kernel on a device, once for each method.
 pub struct FormFactorKernel {

@@ -2,7 +2,7 @@
 
 use crate::shadow_levels::pictures::Pictures;
 use arealight::plan::ShadeOptions;
-use arealight::{Effects, LightTable, Quality, SpecularLobes};
+use arealight::{Effects, LightTable, Plane, Quality, SpecularLobes};
 use arealight_engine::host::{Host, Usage};
 use arealight_engine::{Engine, EngineError, Reference, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers, SceneMaterial};
@@ -134,8 +134,9 @@ fn render(
     let renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, options.size)?;
     let mut pictures = Pictures::new(renderer)?;
     // What each pixel shows
-    let positions: Vec<[f32; 4]> =
-        pictures.renderer.g_buffer().position.download(Usage::COMPUTE_READ).map_err(EngineError::from)?;
+    let positions: Vec<[f32; 4]> = pictures.renderer.g_buffer()[Plane::Position]
+        .download(Usage::COMPUTE_READ)
+        .map_err(EngineError::from)?;
     let material = |position: &[f32; 4]| {
         let triangle = buffers.triangles.get((position[3] as usize).checked_sub(1)?)?;
         (triangle.flags & arealight_tool_kernels::gpu::GpuTriangle::LAMP == 0)

@@ -10,7 +10,7 @@ mod text;
 pub use costs::{Costs, LobeCosts, MethodCosts, rows};
 pub use text::{Modelled, markdown, text};
 
-use arealight::kernels::{Kernel, SHADE};
+use arealight::kernels::{Kernel, SHADE_PASS};
 use arealight_engine::{Engine, EngineError, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers};
 use glam::{Vec3, Vec4};
@@ -23,7 +23,7 @@ pub const LOBES: usize = 2;
 pub const MOST_LIGHTS: u32 = 32;
 
 /// The kernel that finds the paths.
-static PATHS: Kernel = Kernel { constants: &[], ..SHADE.like("paths", include_bytes!("../spirv/paths.spv")) };
+static PATHS: Kernel = Kernel::of_pass("paths", include_bytes!("../spirv/paths.spv"), &SHADE_PASS);
 
 /// The pixels of a wave.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

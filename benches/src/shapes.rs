@@ -1,23 +1,12 @@
 //! The kernel that evaluates disks, spheres and tubes, and its arguments: for the tests and the benchmarks.
 
-use arealight::kernels::{Access, Binding, Kernel};
+use arealight::kernels::Kernel;
 use arealight_oracle::ellipse::Ellipse;
 use arealight_oracle::tube::Tube;
 use glam::{DMat3, DVec3};
 
 /// Form factors of shapes over a list of arguments.
-pub static SHAPES: Kernel = Kernel {
-    name: "shapes",
-    spirv: include_bytes!("../spirv/shapes.spv"),
-    local_size: [64, 1, 1],
-    push_constant_size: 4,
-    bindings: &[
-        Binding::storage_buffer("arguments", Access::Read, "vec4[4] a call"),
-        Binding::storage_buffer("ends", Access::Read, "int a call: arealight::TubeEnds"),
-        Binding::storage_buffer("results", Access::Write, "vec4 a call"),
-    ],
-    constants: &[0, 1, 2, 3],
-};
+pub static SHAPES: Kernel = Kernel::new("shapes", include_bytes!("../spirv/shapes.spv"));
 
 /// The functions that the kernel calls: its first specialisation constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,7 +4,7 @@
 //! threads: on a shared machine the clock tells who else is there, and more so in the longer run.
 
 use crate::cost::quantile;
-use arealight::kernels::{Access, Binding, BindingKind, Kernel};
+use arealight::kernels::Kernel;
 use arealight::{PyramidSize, TexturePart};
 use arealight_engine::host::{Host, Image, ImageDescription, Usage};
 use arealight_engine::{
@@ -17,27 +17,7 @@ use std::fmt::Write as _;
 use std::time::Instant;
 
 /// A level of a chain of mips.
-pub static BOX_MIPS: Kernel = Kernel {
-    name: "box_mips",
-    spirv: include_bytes!("../spirv/box_mips.spv"),
-    local_size: [8, 8, 1],
-    push_constant_size: 0,
-    bindings: &[
-        Binding {
-            name: "finer_level",
-            kind: BindingKind::SampledImage,
-            access: Access::Read,
-            content: "the level before, an array of one layer",
-        },
-        Binding {
-            name: "out_level",
-            kind: BindingKind::StorageImage,
-            access: Access::Write,
-            content: "the level (rgba16f)",
-        },
-    ],
-    constants: &[SIDE],
-};
+pub static BOX_MIPS: Kernel = Kernel::new("box_mips", include_bytes!("../spirv/box_mips.spv"));
 
 /// The constant of [`BOX_MIPS`]: texels of the level before to a side.
 const SIDE: u32 = 0;

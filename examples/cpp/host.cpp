@@ -238,9 +238,9 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
     resources.lights = {number(light_buffer.handle), 0, AREALIGHT_WHOLE_SIZE};
     resources.light_vertices = {number(vertex_buffer.handle), 0, AREALIGHT_WHOLE_SIZE};
     resources.shapes = {number(shape_buffer.handle), 0, AREALIGHT_WHOLE_SIZE};
-    resources.position = {number(g_buffer[0].view), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
-    resources.normal = {number(g_buffer[1].view), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
-    resources.base_color = {number(g_buffer[2].view), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
+    for (uint32_t plane = 0; plane < 3; plane++) { // AREALIGHT_PLANE_POSITION, _NORMAL, _BASE_COLOR
+        resources.planes[plane] = {number(g_buffer[plane].view), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
+    }
     resources.radiance = {number(radiance.view), VK_IMAGE_LAYOUT_GENERAL, 0};
     resources.lobe_horizons = {number(lobe_horizons.handle), 0, AREALIGHT_WHOLE_SIZE}; // these two with tiles alone
     resources.tile_lists = {number(tile_lists.handle), 0, AREALIGHT_WHOLE_SIZE};

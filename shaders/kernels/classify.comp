@@ -21,20 +21,10 @@ layout(constant_id = 19) const uint VIEW = 0u;
 layout(constant_id = 20) const bool LIGHT_COUNTS = false;
 layout(constant_id = 21) const int SAMPLES = 1;
 
-#define LIGHTS_BINDING 1
-#define G_BUFFER_BINDING 3
+#include "bindings.glsl"
 #define G_BUFFER_LAYOUT LAYOUT
 #define G_BUFFER_SAMPLES SAMPLES
-#define SHAPES_BINDING 9
-#define COAT_BINDING 11
-#define SHEEN_BINDING 12
-#define ANISOTROPY_BINDING 13
-#define FILM_BINDING 14
-#define STENCIL_BINDING 16
-#define LIGHT_COUNTS_BINDING 17
-#define TILE_LISTS_BINDING 18
 #define TILE_LISTS_ACCESS
-#define LOBE_HORIZONS_BINDING 19
 #define AREALIGHT_DIFFERENCE 0
 #define AREALIGHT_FOOTPRINT 0
 #include "effects.glsl"

@@ -20,8 +20,8 @@ layout(constant_id = 18) const int SHADOW_HISTORY = 0;
 
 #include "output_texel.glsl"
 
-layout(set = 0, binding = UNSHADOWED_BINDING, rgba32f) uniform readonly image2D unshadowed_image;
-layout(set = 0, binding = RADIANCE_BINDING, rgba32f) uniform image2D radiance_image;
+layout(set = 0, binding = RADIANCE_BINDING, rgba32f) uniform readonly image2D unshadowed_image;
+layout(set = 0, binding = SHADOWED_BINDING, rgba32f) uniform image2D radiance_image;
 
 // Pixels to each side that are searched for blockers, and that the mean is over. Wider means change the error
 // by less than a tenth.

@@ -15,22 +15,8 @@ layout(constant_id = 13) const int LAYOUT = 0;
 layout(constant_id = 15) const int SHADOW_RAYS = 1;
 layout(constant_id = 19) const uint VIEW = 0u;
 
-#define LIGHTS_BINDING 1
-#define G_BUFFER_BINDING 3
+#include "bindings.glsl"
 #define G_BUFFER_LAYOUT LAYOUT
-#define UNSHADOWED_BINDING 7
-#define SHAPES_BINDING 8
-#define COAT_BINDING 9
-#define SHEEN_BINDING 10
-#define ANISOTROPY_BINDING 11
-#define FILM_BINDING 12
-#define PICKS_BINDING 13
-#define SHADOW_BINDING 14
-#define RADIANCE_BINDING 15
-#define BLOCKER_NODES_BINDING 16
-#define BLOCKER_TRIANGLES_BINDING 17
-#define HISTORY_BINDING 18
-#define MOTION_BINDING 19
 
 layout(push_constant, std430) uniform ShadowConstants {
     mat4 position_from_clip;

@@ -2,8 +2,8 @@
 
 use crate::TestEngine;
 use crate::one_pixel::{self, OnePixel};
-use arealight::Light;
 use arealight::plan::RadianceFormat;
+use arealight::{Light, Plane};
 use arealight_capi::{
     AREALIGHT_ABI_VERSION, AREALIGHT_LIGHT_POLYGON, AREALIGHT_WHOLE_SIZE, Arealight, ArealightBuffer,
     ArealightFrame, ArealightFunction, ArealightHost, ArealightImage, ArealightLight, ArealightLightSummary,
@@ -14,6 +14,7 @@ use arealight_capi::{
     arealight_table_bind_memory, arealight_table_memory, arealight_table_upload,
 };
 use arealight_engine::host::{Buffer, DescriptorPool, Image, Location, Usage};
+use arealight_vk::Resource;
 use ash::vk::{self, Handle as _};
 use glam::{Vec3, Vec4};
 use std::cell::Cell;
@@ -306,6 +307,13 @@ impl<'a> CLibrary<'a> {
             layout: usage.layout.as_raw().cast_unsigned(),
             reserved: 0,
         };
+        let planes = pixel.planes();
+        let plane = |plane: Plane| match planes[plane] {
+            Some(Resource::SampledImage { view, layout }) => {
+                ArealightImage { view: view.as_raw(), layout: layout.as_raw().cast_unsigned(), reserved: 0 }
+            }
+            _ => ArealightImage::default(),
+        };
         let whole = |buffer: &Buffer| ArealightBuffer {
             buffer: buffer.handle().as_raw(),
             offset: 0,
@@ -315,14 +323,7 @@ impl<'a> CLibrary<'a> {
             lights: whole(&lights_buffer),
             light_vertices: whole(&vertices),
             shapes: if packed.shapes_size > 0 { whole(&shapes) } else { ArealightBuffer::default() },
-            position: image(&pixel.position, Usage::COMPUTE_READ),
-            normal: image(&pixel.normal, Usage::COMPUTE_READ),
-            base_color: image(&pixel.base_color, Usage::COMPUTE_READ),
-            specular: image(&pixel.specular, Usage::COMPUTE_READ),
-            coat: image(&pixel.coat, Usage::COMPUTE_READ),
-            sheen: image(&pixel.sheen, Usage::COMPUTE_READ),
-            anisotropy: image(&pixel.anisotropy, Usage::COMPUTE_READ),
-            film: image(&pixel.film, Usage::COMPUTE_READ),
+            planes: Plane::ALL.map(plane),
             light_textures,
             radiance: image(&radiance, Usage::COMPUTE_WRITE),
             ..ArealightResources::default()

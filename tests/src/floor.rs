@@ -4,7 +4,7 @@
 use crate::TestEngine;
 use crate::one_pixel::{BEFORE, lamp, material};
 use arealight::plan::{ShadeOptions, TileOptions};
-use arealight::{Light, LightShape, LightTable, PackedLights, Quality, SpecularLobes};
+use arealight::{Light, LightShape, LightTable, PackedLights, Plane, Quality, SpecularLobes};
 use arealight_engine::host::{Buffer, Image, ImageDescription, Location, Usage};
 use arealight_oracle::material::{Material, Surface};
 use arealight_oracle::shading::{RelativeLight, ltc, shape_ltc_on, shape_seen_from};
@@ -125,9 +125,12 @@ impl<'a> Floor<'a> {
             lights,
             light_vertices: vertices,
             shapes: Some(shapes),
-            position: read(&self.position),
-            normal: read(&self.normal),
-            base_color: read(&self.color),
+            planes: [
+                (Plane::Position, read(&self.position)),
+                (Plane::Normal, read(&self.normal)),
+                (Plane::BaseColor, read(&self.color)),
+            ]
+            .into(),
             radiance: Resource::StorageImage { view: self.radiance.view() },
             ..ShadeResources::default()
         }

@@ -1,140 +1,41 @@
 //! Kernels of the tests' own, compiled from `tests/kernels`.
 
 use crate::TestEngine;
-use arealight::kernels::{Access, Binding, Kernel};
+use arealight::kernels::Kernel;
 use arealight_vk::Resource;
 use bytemuck::Pod;
 use std::path::Path;
 use std::process::Command;
 
 /// Single functions of the library over a list of arguments.
-pub static PROBE: Kernel = Kernel {
-    name: "probe",
-    spirv: include_bytes!("../spirv/probe.spv"),
-    local_size: [64, 1, 1],
-    push_constant_size: 4,
-    bindings: &[
-        arealight::kernels::TABLE,
-        Binding::storage_buffer("arguments", Access::Read, "vec4[3] a call"),
-        Binding::storage_buffer("results", Access::Write, "vec4[4] a call"),
-    ],
-    constants: &[0],
-};
+pub static PROBE: Kernel = Kernel::new("probe", include_bytes!("../spirv/probe.spv"));
 
 /// The arcs of quads, summed without a guard: the sum, and the sum clamped.
-pub static UNGUARDED: Kernel = Kernel {
-    name: "unguarded",
-    spirv: include_bytes!("../spirv/unguarded.spv"),
-    local_size: [64, 1, 1],
-    push_constant_size: 4,
-    bindings: &[
-        Binding::storage_buffer("vertices", Access::Read, "vec4[4] a quad"),
-        Binding::storage_buffer("results", Access::Write, "vec4 a quad"),
-    ],
-    constants: &[],
-};
+pub static UNGUARDED: Kernel = Kernel::new("unguarded", include_bytes!("../spirv/unguarded.spv"));
 
 /// What can happen to a branch by a specialisation constant; ten numbers a number.
-pub static BRANCHES: Kernel = Kernel {
-    name: "branches",
-    spirv: include_bytes!("../spirv/branches.spv"),
-    local_size: [8, 1, 1],
-    push_constant_size: 4,
-    bindings: &[
-        Binding::storage_buffer("arguments", Access::Read, "uint a call"),
-        Binding::storage_buffer("results", Access::Write, "uint[10] a call"),
-    ],
-    constants: &[0, 1, 2],
-};
+pub static BRANCHES: Kernel = Kernel::new("branches", include_bytes!("../spirv/branches.spv"));
 
 /// How far lights of records are of any matter; seven numbers a light.
-pub static LIGHT_REACH: Kernel = Kernel {
-    name: "light_reach",
-    spirv: include_bytes!("../spirv/light_reach.spv"),
-    local_size: [8, 1, 1],
-    push_constant_size: 4,
-    bindings: &[
-        arealight::kernels::LIGHTS,
-        arealight::kernels::SHAPES,
-        Binding::storage_buffer("asked", Access::Read, "two counts, threshold and density"),
-        Binding::storage_buffer("results", Access::Write, "radius, low and high a light"),
-    ],
-    constants: &[],
-};
+pub static LIGHT_REACH: Kernel = Kernel::new("light_reach", include_bytes!("../spirv/light_reach.spv"));
 
 /// The example of a host's shader that says whether its table is right.
-pub static SELF_TEST: Kernel = Kernel {
-    name: "self_test",
-    spirv: include_bytes!("../../benches/spirv/examples/self_test.spv"),
-    local_size: [1, 1, 1],
-    push_constant_size: 4,
-    bindings: &[
-        arealight::kernels::TABLE,
-        Binding::storage_buffer("result", Access::Write, "uint: a bit for each point that is wrong"),
-    ],
-    constants: &[],
-};
+pub static SELF_TEST: Kernel =
+    Kernel::new("self_test", include_bytes!("../../benches/spirv/examples/self_test.spv"));
 
 /// Directions drawn over polygons.
-pub static POLYGON_SAMPLING: Kernel = Kernel {
-    name: "polygon_sampling",
-    spirv: include_bytes!("../spirv/polygon_sampling.spv"),
-    local_size: [64, 1, 1],
-    push_constant_size: 4,
-    bindings: &[
-        Binding::storage_buffer("arguments", Access::Read, "vec4[5] a polygon"),
-        Binding::storage_buffer("results", Access::Write, "vec4 a draw: direction, area"),
-    ],
-    constants: &[0],
-};
+pub static POLYGON_SAMPLING: Kernel =
+    Kernel::new("polygon_sampling", include_bytes!("../spirv/polygon_sampling.spv"));
 
 /// Shadow rays for shading points under lights of triangles.
-pub static SHADOW_RAYS: Kernel = Kernel {
-    name: "shadow_rays",
-    spirv: include_bytes!("../spirv/shadow_rays.spv"),
-    local_size: [64, 1, 1],
-    push_constant_size: 4,
-    bindings: &[
-        arealight::kernels::TABLE,
-        Binding::storage_buffer("points", Access::Read, "20 words a point"),
-        Binding::storage_buffer("corners", Access::Read, "vec4[3] a triangle"),
-        Binding::storage_buffer("rays", Access::Write, "vec4[2] a ray: direction and sum, colour"),
-    ],
-    constants: &[0],
-};
+pub static SHADOW_RAYS: Kernel = Kernel::new("shadow_rays", include_bytes!("../spirv/shadow_rays.spv"));
 
 /// Blockers along rays, from buffers of [`arealight::Blockers`].
-pub static BLOCKERS: Kernel = Kernel {
-    name: "blockers",
-    spirv: include_bytes!("../spirv/blockers.spv"),
-    local_size: [64, 1, 1],
-    push_constant_size: 4,
-    bindings: &[
-        arealight::kernels::BLOCKER_NODES,
-        arealight::kernels::BLOCKER_TRIANGLES,
-        Binding::storage_buffer("rays", Access::Read, "vec4[2] a ray: origin; direction and distance"),
-        Binding::storage_buffer("distances", Access::Write, "float a ray"),
-    ],
-    constants: &[],
-};
+pub static BLOCKERS: Kernel = Kernel::new("blockers", include_bytes!("../spirv/blockers.spv"));
 
 /// Blockers along rays, from the buffers of a scene.
-pub static SCENE_BLOCKERS: Kernel = Kernel {
-    name: "scene_blockers",
-    spirv: include_bytes!("../spirv/scene_blockers.spv"),
-    local_size: [64, 1, 1],
-    push_constant_size: 4,
-    bindings: &[
-        arealight::kernels::BLOCKER_NODES,
-        Binding::storage_buffer("triangles", Access::Read, "GpuTriangle[]"),
-        Binding::storage_buffer("materials", Access::Read, "GpuMaterial[]"),
-        Binding::storage_buffer("textures", Access::Read, "GpuTexture[]"),
-        Binding::storage_buffer("texels", Access::Read, "uint[]"),
-        Binding::storage_buffer("rays", Access::Read, "vec4[2] a ray: origin; direction and distance"),
-        Binding::storage_buffer("distances", Access::Write, "float a ray"),
-    ],
-    constants: &[],
-};
+pub static SCENE_BLOCKERS: Kernel =
+    Kernel::new("scene_blockers", include_bytes!("../spirv/scene_blockers.spv"));
 
 /// The functions that the probe kernel calls: its specialisation constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

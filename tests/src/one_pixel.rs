@@ -2,7 +2,7 @@
 
 use crate::TestEngine;
 use arealight::plan::{GBufferLayout, RadianceFormat, ShadeOptions};
-use arealight::{Effects, Light, LightShape, PackedLights};
+use arealight::{Effects, Light, LightShape, PackedLights, Plane, Planes};
 use arealight_engine::EvalPoint;
 use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_oracle::material::{Material, Surface};
@@ -43,23 +43,9 @@ pub fn under_lamp(surface: Surface) -> EvalPoint {
 /// One pixel that sees a point, through a G-buffer that the test makes itself.
 pub struct OnePixel<'a> {
     engine: &'a TestEngine,
-    /// Positions, of a pass that takes them from an image.
-    pub position: Image,
+    /// By plane, but for depth and stencils.
+    planes: Planes<Option<Image>>,
     depth: Image,
-    /// At the binding `g_normal`, of the G-buffer's layout; so the next two.
-    pub normal: Image,
-    /// At `g_base_color`.
-    pub base_color: Image,
-    /// At `g_specular`.
-    pub specular: Image,
-    /// At `g_coat`.
-    pub coat: Image,
-    /// At `g_sheen`.
-    pub sheen: Image,
-    /// At `g_anisotropy`.
-    pub anisotropy: Image,
-    /// At `g_film`.
-    pub film: Image,
     /// Of a host that reads them in its own way.
     pub module: Option<Vec<u32>>,
 }
@@ -72,19 +58,34 @@ impl<'a> OnePixel<'a> {
     /// Where the device fails.
     pub fn new(engine: &'a TestEngine, position: Vec4, depth: f32) -> Self {
         let float = vk::Format::R32G32B32A32_SFLOAT;
+        let planes = Planes::from_fn(|plane| match plane {
+            Plane::Position => Some(position.to_array()),
+            Plane::Normal => Some([0.0, 0.0, 2.0, 0.5]),
+            Plane::BaseColor | Plane::Specular => Some([0.8, 0.6, 0.4, 0.25]),
+            Plane::Stencil => None,
+            _ => Some([0.0; 4]),
+        });
         Self {
             engine,
-            position: sampled(engine, float, position.to_array()),
+            planes: Planes::from_fn(|plane| {
+                planes[plane].map(|texel: [f32; 4]| sampled(engine, float, texel))
+            }),
             depth: sampled(engine, vk::Format::R32_SFLOAT, depth),
-            normal: sampled(engine, float, [0.0_f32, 0.0, 2.0, 0.5]),
-            base_color: sampled(engine, float, [0.8_f32, 0.6, 0.4, 0.25]),
-            specular: sampled(engine, float, [0.8_f32, 0.6, 0.4, 0.25]),
-            coat: sampled(engine, float, [0.0_f32; 4]),
-            sheen: sampled(engine, float, [0.0_f32; 4]),
-            anisotropy: sampled(engine, float, [0.0_f32; 4]),
-            film: sampled(engine, float, [0.0_f32; 4]),
             module: None,
         }
+    }
+
+    /// Puts a texel into a plane.
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn set<T: Pod>(&mut self, plane: Plane, format: vk::Format, texel: T) {
+        self.planes[plane] = Some(sampled(self.engine, format, texel));
+    }
+
+    /// The planes that there are, as a pass reads them.
+    pub fn planes(&self) -> Planes<Option<Resource>> {
+        Planes::from_fn(|plane| self.planes[plane].as_ref().map(read_image))
     }
 
     /// Under [`lamp`], of surfaces that need these effects beside both lobes and a reflectance of their own.
@@ -136,23 +137,15 @@ impl<'a> OnePixel<'a> {
             let vertex_buffer = host.storage_buffer("vertices", &packed.vertices).unwrap();
             let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
             let set = pool.allocate(pass.set_layout()).unwrap();
-            let sampled = |image: &Image| Resource::SampledImage {
-                view: image.view(),
-                layout: Usage::COMPUTE_READ.layout,
-            };
-            let from_depth = options.from_depth;
+            let mut planes = self.planes();
+            if options.from_depth {
+                planes[Plane::Position] = Some(read_image(&self.depth));
+            }
             let resources = ShadeResources {
                 table: self.engine.table(),
                 lights: Resource::buffer(light_buffer.handle()),
                 light_vertices: Resource::buffer(vertex_buffer.handle()),
-                position: sampled(if from_depth { &self.depth } else { &self.position }),
-                normal: sampled(&self.normal),
-                base_color: sampled(&self.base_color),
-                specular: Some(sampled(&self.specular)),
-                coat: Some(sampled(&self.coat)),
-                sheen: Some(sampled(&self.sheen)),
-                anisotropy: Some(sampled(&self.anisotropy)),
-                film: Some(sampled(&self.film)),
+                planes,
                 radiance: Resource::StorageImage { view: radiance.view() },
                 glossy: Some(Resource::StorageImage { view: glossy.view() }),
                 light_textures: Some(self.engine.light_textures()),
@@ -172,6 +165,11 @@ impl<'a> OnePixel<'a> {
     }
 }
 
+/// An image as a pass reads it.
+fn read_image(image: &Image) -> Resource {
+    Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout }
+}
+
 fn image(engine: &TestEngine, format: vk::Format, usage: vk::ImageUsageFlags) -> Image {
     let description = ImageDescription { name: "one pixel", extent: [1, 1], layers: 1, format, usage };
     engine.host().image(&description).unwrap()
@@ -181,7 +179,7 @@ fn image(engine: &TestEngine, format: vk::Format, usage: vk::ImageUsageFlags) ->
 ///
 /// # Panics
 /// Where the device fails, or the texel is not of the format's size.
-pub fn sampled<T: Pod>(engine: &TestEngine, format: vk::Format, texel: T) -> Image {
+fn sampled<T: Pod>(engine: &TestEngine, format: vk::Format, texel: T) -> Image {
     let image = image(engine, format, vk::ImageUsageFlags::SAMPLED);
     image.upload(&[texel], Usage::COMPUTE_READ).unwrap();
     image

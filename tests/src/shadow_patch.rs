@@ -3,8 +3,9 @@
 
 use crate::TestEngine;
 use arealight::plan::{ShadeOptions, ShadowFilter, TileOptions};
-use arealight::{Blockers, Light, PackedLights};
+use arealight::{Blockers, Light, PackedLights, Plane, Planes};
 use arealight_engine::host::{Buffer, Image, ImageDescription, Location, Usage};
+use arealight_engine::texel_of;
 use arealight_oracle::material::Material;
 use arealight_vk::{
     BlockerResources, Bound, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources, ShadowFrame,
@@ -132,13 +133,6 @@ impl<'a> PatchPasses<'a> {
     }
 }
 
-/// What the G-buffer's image of films holds of a material.
-fn film_texel(material: &Material) -> [f32; 4] {
-    material
-        .film
-        .map_or([0.0; 4], |film| [film.weight, film.ior, film.thickness, 0.0].map(|value| value as f32))
-}
-
 impl ShadowPatch {
     /// Runs both passes.
     ///
@@ -149,22 +143,14 @@ impl ShadowPatch {
         let host = engine.host();
         let packed = PackedLights::new(&self.lights, DVec3::ZERO).unwrap();
         let blockers = Blockers::new(&self.blockers).unwrap();
-        let material = &self.material;
-        let images = [
-            filled(engine, [0.0, 0.0, 0.0, 1.0]),
-            filled(engine, [0.0, 0.0, 1.0, material.roughness]),
-            filled(engine, material.base_color.extend(material.metalness).to_array()),
-            filled(engine, material.dielectric_f0.extend(material.dielectric_f90).to_array()),
-            filled(engine, [material.coat, material.coat_roughness, 0.0, 0.0]),
-            filled(engine, material.sheen_color.extend(material.sheen_roughness).to_array()),
-            filled(engine, [0.0; 4]),
-            filled(engine, film_texel(material)),
-        ];
-        let [position, normal, base_color, specular, coat, sheen, anisotropy, film] = images
-            .each_ref()
-            .map(|image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout });
+        let images = Planes::from_fn(|plane| match plane {
+            Plane::Position => filled(engine, [0.0, 0.0, 0.0, 1.0]),
+            _ => filled(engine, texel_of(&self.material, Vec3::Z, plane)),
+        });
         let [radiance, shadowed] = [(); 2].map(|()| stored(engine, vk::Format::R32G32B32A32_SFLOAT));
         let shadow = stored(engine, ShadowPass::SHADOW_FORMAT);
+        let read =
+            |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
         let of = |image: &Image| Resource::StorageImage { view: image.view() };
         let buffer = |buffer: &Buffer| Resource::buffer(buffer.handle());
         let lights = host.storage_buffer("lights", &packed.lights).unwrap();
@@ -195,14 +181,7 @@ impl ShadowPatch {
                 lights: buffer(&lights),
                 light_vertices: buffer(&vertices),
                 shapes: Some(buffer(&shapes)),
-                position,
-                normal,
-                base_color,
-                specular: Some(specular),
-                coat: Some(coat),
-                sheen: Some(sheen),
-                anisotropy: Some(anisotropy),
-                film: Some(film),
+                planes: Planes::from_fn(|plane| (plane != Plane::Stencil).then(|| read(&images[plane]))),
                 radiance: of(&radiance),
                 picks: Some(buffer(&picks)),
                 lobe_horizons,
@@ -214,7 +193,6 @@ impl ShadowPatch {
                 shadow: of(&shadow),
                 radiance: Some(of(&shadowed)),
                 history: None,
-                motion: None,
                 blockers: blocker_set
                     .is_none()
                     .then(|| BlockerResources { nodes: buffer(&nodes), triangles: buffer(&triangles) }),

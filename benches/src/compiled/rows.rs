@@ -66,17 +66,17 @@ impl Row {
             Source::Kernel(kernel, specialization) => ComputeShader {
                 words: prune(&words_of(kernel, specialization), specialization),
                 specialization: specialization.clone(),
-                bindings: kernel.bindings.iter().map(|binding| (descriptor(binding.kind), 1)).collect(),
-                push_constant_size: kernel.push_constant_size,
+                bindings: kernel.bindings().iter().map(|one| (one.number, descriptor(one.kind), 1)).collect(),
+                push_constant_size: kernel.push_constant_size(),
             },
             Source::Deferred(module, specialization) => ComputeShader {
                 words: prune(&words(module), specialization),
                 specialization: specialization.clone(),
                 bindings: vec![
-                    (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 1), // table
-                    (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 3), // g_buffer
-                    (vk::DescriptorType::STORAGE_IMAGE, 1),          // radiance_image
-                    (vk::DescriptorType::STORAGE_BUFFER, 1),         // Lamps
+                    (0, vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 1), // table
+                    (1, vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 3), // g_buffer
+                    (2, vk::DescriptorType::STORAGE_IMAGE, 1),          // radiance_image
+                    (3, vk::DescriptorType::STORAGE_BUFFER, 1),         // Lamps
                 ],
                 push_constant_size: 16,
             },

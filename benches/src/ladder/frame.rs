@@ -5,11 +5,11 @@ use super::points::Point;
 use crate::school::YardstickTable;
 use crate::textures::{is_software, timed};
 use arealight::gpu::ShadeConstants;
-use arealight::kernels::{Kernel, SHADE};
+use arealight::kernels::{Binding, Kernel, SHADE};
 use arealight::plan::{ShadeOptions, shade_specialization};
-use arealight::{Light, LightSummary, PackedLights};
+use arealight::{Light, LightSummary, PackedLights, Plane};
 use arealight_engine::host::{Buffer, Usage};
-use arealight_engine::{BoundSet, Engine, EngineError, GBuffer, SharedPass, UploadedTable};
+use arealight_engine::{BoundSet, Engine, EngineError, GBuffer, SharedPass, UploadedTable, texel_of};
 use arealight_tool_kernels::LightSampling;
 use arealight_tool_kernels::gpu::ReferenceConstants;
 use arealight_tool_kernels::kernels::REFERENCE;
@@ -35,32 +35,29 @@ pub fn g_buffer(
         };
         (0..width * height).map(pixel).collect()
     };
-    let half = |texels: Vec<[f32; 4]>| -> Vec<[f16; 4]> {
-        texels.into_iter().map(|texel| texel.map(f16::from_f32)).collect()
-    };
-    // A patch is a hundredth as large as it is far from the camera
-    let position = texels(&|point, [x, y]| {
-        let (u, v) = point.normal.any_orthonormal_pair();
-        let place = point.position + (u * x + v * y) * (0.01 * point.position.length());
-        place.extend(1.0).to_array()
-    });
-    let normal = texels(&|point, _| point.normal.extend(point.material.roughness).to_array());
-    let base_color =
-        texels(&|point, _| point.material.base_color.extend(point.material.metalness).to_array());
-    let specular =
-        texels(&|point, _| point.material.dielectric_f0.extend(point.material.dielectric_f90).to_array());
-    let none = vec![[0.0_f32; 4]; width * height];
-    g_buffer.position.upload(&position, Usage::COMPUTE_READ)?;
-    g_buffer.normal.upload(&normal, Usage::COMPUTE_READ)?;
-    g_buffer.base_color.upload(&half(base_color), Usage::COMPUTE_READ)?;
-    g_buffer.specular.upload(&specular, Usage::COMPUTE_READ)?;
-    // No coat, sheen, film, second roughness or transmission: Monte Carlo reads them of every surface
-    g_buffer.coat.upload(&none, Usage::COMPUTE_READ)?;
-    g_buffer.anisotropy.upload(&none, Usage::COMPUTE_READ)?;
-    g_buffer.sheen.upload(&none, Usage::COMPUTE_READ)?;
+    for plane in Plane::ALL {
+        let image = &g_buffer[plane];
+        let of = texels(&|point, [x, y]| {
+            if plane != Plane::Position {
+                return texel_of(&point.material, point.normal, plane);
+            }
+            // A patch is a hundredth as large as it is far from the camera
+            let (u, v) = point.normal.any_orthonormal_pair();
+            let place = point.position + (u * x + v * y) * (0.01 * point.position.length());
+            place.extend(1.0).to_array()
+        });
+        match plane {
+            Plane::Stencil => image.upload(&[0_u32], Usage::COMPUTE_READ)?,
+            Plane::Motion => image.upload(&of[..1], Usage::COMPUTE_READ)?,
+            Plane::BaseColor => {
+                let half: Vec<_> = of.iter().map(|texel| texel.map(f16::from_f32)).collect();
+                image.upload(&half, Usage::COMPUTE_READ)?;
+            }
+            _ => image.upload(&of, Usage::COMPUTE_READ)?,
+        }
+    }
+    // Nor is anything let through: Monte Carlo reads it of every surface
     g_buffer.transmitted.upload(&vec![[0_u16; 4]; width * height], Usage::COMPUTE_READ)?;
-    g_buffer.film.upload(&none, Usage::COMPUTE_READ)?;
-    g_buffer.stencil.upload(&vec![0_u32; width * height], Usage::COMPUTE_READ)?;
     Ok(g_buffer)
 }
 
@@ -146,7 +143,7 @@ impl<'a> Frame<'a> {
     pub fn ready(&self, method: Method) -> Result<Ready, EngineError> {
         let (kernel, specialization) = self.pipeline(method);
         let resources: Vec<Resource> =
-            kernel.bindings.iter().map(|binding| self.resource(binding.name, method)).collect();
+            kernel.bindings().iter().map(|binding| self.resource(binding, method)).collect();
         let pass = self.engine.passes().pass(kernel, &specialization)?;
         // SAFETY: The frame and the engine outlive what is made of them here, and submissions are waited for.
         let set = unsafe { self.engine.passes().bind(&pass, &resources) }?;
@@ -154,32 +151,20 @@ impl<'a> Frame<'a> {
     }
 
     /// What a kernel's binding is for. Disks, spheres and tubes, of which there are none, have any buffer.
-    fn resource(&self, binding: &str, method: Method) -> Resource {
+    fn resource(&self, binding: &Binding, method: Method) -> Resource {
         let has_published =
             matches!(method, Method::Yardstick { table: YardstickTable::PublishedQuality, .. });
         let buffer = |buffer: &Buffer| Resource::buffer(buffer.handle());
-        let [position, normal, base_color, specular, coat, sheen, anisotropy, film, transmitted] =
-            self.g_buffer.sampled();
-        match binding {
+        if let Some(image) = self.g_buffer.bound_at(binding) {
+            return image;
+        }
+        match binding.name {
             "table_image" if has_published => self.published.resource(),
             "table_image" => self.engine.table(),
             "light_textures" => self.engine.light_textures(),
             "light_vertices" => buffer(&self.vertices),
             "light_sampling" => buffer(&self.sampling),
             "light_triangles" => buffer(&self.triangles),
-            "g_position" => position,
-            "g_normal" => normal,
-            "g_base_color" => base_color,
-            "g_specular" => specular,
-            "g_coat" => coat,
-            "g_sheen" => sheen,
-            "g_anisotropy" => anisotropy,
-            "g_transmitted" => transmitted,
-            "g_film" => film,
-            "g_stencil" => self.g_buffer.no_stencil(),
-            "radiance_image" | "glossy_image" => {
-                Resource::StorageImage { view: self.g_buffer.radiance.view() }
-            }
             _ => buffer(&self.lights),
         }
     }

@@ -2,14 +2,12 @@
 
 use super::points::LightKind;
 use crate::school::{School, YardstickTable};
-use arealight::kernels::{Kernel, SHADE};
+use arealight::kernels::{Kernel, SHADE_PASS};
 use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, Quality, SpecularLobes};
 
 /// The shade kernel with the form factors that others ship.
-pub static SHADE_YARDSTICK: Kernel = Kernel {
-    constants: &[0, 1],
-    ..SHADE.like("shade_yardstick", include_bytes!("../../spirv/shade_yardstick.spv"))
-};
+pub static SHADE_YARDSTICK: Kernel =
+    Kernel::of_pass("shade_yardstick", include_bytes!("../../spirv/shade_yardstick.spv"), &SHADE_PASS);
 
 /// A way to shade a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

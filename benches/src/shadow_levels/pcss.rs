@@ -1,11 +1,6 @@
 //! The kernel that shades by a shadow map: `benches/kernels/pcss.comp`.
 
-use super::area_sampling::RADIANCE;
-use arealight::gpu::ShadeConstants;
-use arealight::kernels::{
-    Access, BLOCKER_NODES, BLOCKER_TRIANGLES, Binding, BindingKind, G_BASE_COLOR, G_NORMAL, G_POSITION,
-    G_SPECULAR, Kernel, LIGHT_VERTICES, LIGHTS,
-};
+use arealight::kernels::Kernel;
 
 /// The id of the specialisation constant `MAKES_MAP`: 1 makes the map, 0 shades by it.
 pub const MAKES_MAP: u32 = 0;
@@ -18,27 +13,4 @@ pub const FILTER_TAPS: u32 = 2;
 pub const MAP_SIZE: u32 = 512;
 
 /// Percentage-closer soft shadows, which multiply the radiance. For one quad that shines to one side.
-pub static PCSS: Kernel = Kernel {
-    name: "pcss",
-    spirv: include_bytes!("../../spirv/pcss.spv"),
-    local_size: [8, 8, 1],
-    push_constant_size: size_of::<ShadeConstants>() as u32,
-    bindings: &[
-        LIGHTS,
-        LIGHT_VERTICES,
-        G_POSITION,
-        G_NORMAL,
-        G_BASE_COLOR,
-        G_SPECULAR,
-        RADIANCE,
-        BLOCKER_NODES,
-        BLOCKER_TRIANGLES,
-        Binding {
-            name: "depths",
-            kind: BindingKind::StorageBuffer,
-            access: Access::ReadWrite,
-            content: "depths of the shadow map: float[512 x 512]",
-        },
-    ],
-    constants: &[MAKES_MAP, SEARCH_TAPS, FILTER_TAPS],
-};
+pub static PCSS: Kernel = Kernel::new("pcss", include_bytes!("../../spirv/pcss.spv"));

@@ -5,7 +5,7 @@ use crate::shadow_levels::ShadowLevelsError;
 use crate::shadow_levels::pictures::{Pictures, unshadowed};
 use crate::shadows::{ShadowTruth, part_found};
 use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory};
-use arealight::{Effects, Light, LightShape};
+use arealight::{Effects, Light, LightShape, Plane};
 use arealight_engine::host::Usage;
 use arealight_engine::{Engine, EngineError, SceneRenderer, ShadowedView};
 use arealight_scene::{Camera, Scene, SceneBuffers};
@@ -118,8 +118,8 @@ impl<'a> Film<'a> {
     /// What each pixel sees.
     fn see(&self) -> Result<Vec<Seen>, EngineError> {
         let g_buffer = self.pictures.renderer.g_buffer();
-        let positions: Vec<[f32; 4]> = g_buffer.position.download(Usage::COMPUTE_READ)?;
-        let normals: Vec<[f32; 4]> = g_buffer.normal.download(Usage::COMPUTE_READ)?;
+        let positions: Vec<[f32; 4]> = g_buffer[Plane::Position].download(Usage::COMPUTE_READ)?;
+        let normals: Vec<[f32; 4]> = g_buffer[Plane::Normal].download(Usage::COMPUTE_READ)?;
         let vector = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z).as_dvec3();
         let points = positions.into_iter().zip(normals);
         Ok(points.map(|(p, n)| (p[3] != 0.0).then(|| (vector(p), vector(n)))).collect())

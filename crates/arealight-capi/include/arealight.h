@@ -33,7 +33,7 @@
 // Some light lights both of its sides.
 #define AREALIGHT_EFFECT_TWO_SIDED 4
 
-// Some surface has a dielectric reflectance of its own: ArealightResources.specular is read.
+// Some surface has a dielectric reflectance of its own: AREALIGHT_PLANE_SPECULAR is read.
 #define AREALIGHT_EFFECT_SPECULAR_INPUT 8
 
 // Some light is concave, not quite flat, or has more than four vertices.
@@ -58,7 +58,7 @@
 // set then, too.
 #define AREALIGHT_EFFECT_TEXTURED_ELLIPSE 4096
 
-// Some surface has a clear coat: ArealightResources.coat is read.
+// Some surface has a clear coat: AREALIGHT_PLANE_COAT is read.
 #define AREALIGHT_EFFECT_COAT 8192
 
 // Some coat has a normal of its own. AREALIGHT_EFFECT_COAT is set then, too.
@@ -75,13 +75,13 @@
 // too.
 #define AREALIGHT_EFFECT_COAT_BY_ALBEDO 131072
 
-// Some diffuse lobe is rough: ArealightResources.anisotropy is read.
+// Some diffuse lobe is rough: AREALIGHT_PLANE_ANISOTROPY is read.
 #define AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS 262144
 
-// Some surface has sheen: ArealightResources.sheen is read.
+// Some surface has sheen: AREALIGHT_PLANE_SHEEN is read.
 #define AREALIGHT_EFFECT_SHEEN 524288
 
-// Some surface's specular lobe has two roughnesses: ArealightResources.anisotropy is read.
+// Some surface's specular lobe has two roughnesses: AREALIGHT_PLANE_ANISOTROPY is read.
 #define AREALIGHT_EFFECT_ANISOTROPY 1048576
 
 // What specular lobes' facets reflect more than once is added, as in OpenPBR; else it is lost, as in glTF.
@@ -91,7 +91,7 @@
 // pass of its own whose base colour is the part of the light that is let through.
 #define AREALIGHT_EFFECT_TRANSMISSION 4194304
 
-// Some surface has a thin film that its reflectances lack: ArealightResources.film is read.
+// Some surface has a thin film that its reflectances lack: AREALIGHT_PLANE_FILM is read.
 #define AREALIGHT_EFFECT_THIN_FILM 8388608
 
 // Form factors to float32's own precision, 1e-6.
@@ -131,7 +131,51 @@
 // With four by four parts of the light, a form factor and two fetches each.
 #define AREALIGHT_FOOTPRINT_SPLIT 2
 
-// ArealightResources.position holds positions; w = 0 where there is no surface.
+// Positions relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f). As the
+// next ones, an index into ArealightResources.planes.
+#define AREALIGHT_PLANE_POSITION 0
+
+// Shading normal in xyz, of any length; perceptual roughness in w (rgba16f, rgba32f for mirrors). By
+// AREALIGHT_G_BUFFER_*, as the next two.
+#define AREALIGHT_PLANE_NORMAL 1
+
+// Linear base colour in rgb, metalness in a (rgba8).
+#define AREALIGHT_PLANE_BASE_COLOR 2
+
+// Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT, in a pass with
+// AREALIGHT_G_BUFFER_AREALIGHT.
+#define AREALIGHT_PLANE_SPECULAR 3
+
+// Of clear coats: weight in r, perceptual roughness in g (rg8), and with AREALIGHT_EFFECT_COAT_NORMAL the
+// coat's normal in ba, as its place in [-1, 1] x [-1, 1] on an unfolded octahedron (rgba16f). May be 0
+// without AREALIGHT_EFFECT_COAT.
+#define AREALIGHT_PLANE_COAT 4
+
+// Of sheen: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without
+// AREALIGHT_EFFECT_SHEEN.
+#define AREALIGHT_PLANE_SHEEN 5
+
+// Of lobes of two roughnesses: the tangent in rg, as its place in [-1, 1] x [-1, 1] on an unfolded
+// octahedron, perceptual roughness along it in b, 0 where there is one roughness; and the roughness of the
+// diffuse lobe in a (rgba16f). May be 0 without AREALIGHT_EFFECT_ANISOTROPY and _DIFFUSE_ROUGHNESS.
+#define AREALIGHT_PLANE_ANISOTROPY 6
+
+// Of thin films: how much of the surface one covers in r, its index of refraction in g, its thickness in
+// nanometres in b (rgba16f). May be 0 without AREALIGHT_EFFECT_THIN_FILM.
+#define AREALIGHT_PLANE_FILM 7
+
+// A stencil for each texel: the stencil aspect (s8_uint) or unsigned integers (r8_uint). May be 0 without
+// ArealightPassOptions.stencil.
+#define AREALIGHT_PLANE_STENCIL 8
+
+// Where a pixel's point was in the frame before less where it is, in parts of the image's width and height
+// (rg16f). May be 0 but for a shadow pass with AREALIGHT_SHADOW_HISTORY_MOTION.
+#define AREALIGHT_PLANE_MOTION 9
+
+// How many planes there are.
+#define AREALIGHT_PLANE_COUNT 10
+
+// AREALIGHT_PLANE_POSITION holds positions; w = 0 where there is no surface.
 #define AREALIGHT_POSITION_IMAGE 0
 
 // It holds depth as stored; exactly 0 or 1 where there is no surface.
@@ -154,7 +198,7 @@
 // Without sets: arealight_pass_record_pushed. The device was made with VK_KHR_push_descriptor.
 #define AREALIGHT_DESCRIPTORS_PUSHED 2
 
-// What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and
+// What AREALIGHT_PLANE_NORMAL, _BASE_COLOR and _SPECULAR hold: normal and roughness; base colour and
 // metalness; dielectric F0 and F90.
 #define AREALIGHT_G_BUFFER_AREALIGHT 0
 
@@ -492,7 +536,7 @@ typedef struct ArealightPassOptions {
     // How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. Radiance
     // is the mean over them. Not with shadow rays or half resolution. 0 is 1.
     uint32_t samples;
-    // 1: frames have a stencil test, by ArealightResources.stencil; pixels that fail it stay as they are;
+    // 1: frames have a stencil test, by AREALIGHT_PLANE_STENCIL; pixels that fail it stay as they are;
     // without shadow rays. Else 0.
     uint32_t stencil;
     // 1: how many lights a frame has is read from ArealightResources.light_counts when the commands run;
@@ -549,30 +593,8 @@ typedef struct ArealightResources {
     struct ArealightBuffer light_vertices;
     // ArealightPackedLights.shapes. May be 0 where no frame has disks, spheres or tubes.
     struct ArealightBuffer shapes;
-    // Positions relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f).
-    struct ArealightImage position;
-    // Shading normal in xyz, of any length; perceptual roughness in w (rgba16f, rgba32f for mirrors).
-    struct ArealightImage normal;
-    // Linear base colour in rgb, metalness in a (rgba8).
-    struct ArealightImage base_color;
-    // Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT, in a pass
-    // with AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
-    struct ArealightImage specular;
-    // Of clear coats, in every layout: weight in r, perceptual roughness in g (rg8), and with
-    // AREALIGHT_EFFECT_COAT_NORMAL the coat's normal in ba, as its place in [-1, 1] x [-1, 1] on an unfolded
-    // octahedron (rgba16f). May be 0 without AREALIGHT_EFFECT_COAT.
-    struct ArealightImage coat;
-    // Of sheen, in every layout: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without
-    // AREALIGHT_EFFECT_SHEEN.
-    struct ArealightImage sheen;
-    // Of lobes of two roughnesses, in every layout: the tangent in rg, as its place in [-1, 1] x [-1, 1] on
-    // an unfolded octahedron, perceptual roughness along it in b, 0 where there is one roughness; and the
-    // roughness of the diffuse lobe in a (rgba16f). May be 0 without AREALIGHT_EFFECT_ANISOTROPY and
-    // _DIFFUSE_ROUGHNESS.
-    struct ArealightImage anisotropy;
-    // Of thin films, in every layout: how much of the surface one covers in r, its index of refraction in g,
-    // its thickness in nanometres in b (rgba16f). May be 0 without AREALIGHT_EFFECT_THIN_FILM.
-    struct ArealightImage film;
+    // The G-buffer, by AREALIGHT_PLANE_*. What a pass does not read may be 0.
+    struct ArealightImage planes[AREALIGHT_PLANE_COUNT];
     // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that
     // `arealight export` describes. May be 0 where no frame has textured lights.
     struct ArealightImage light_textures;
@@ -588,9 +610,6 @@ typedef struct ArealightResources {
     struct ArealightBuffer tile_lists;
     // Of arealight_pass_shadow_picks_size bytes. Without shadow rays 0.
     struct ArealightBuffer shadow_picks;
-    // A stencil for each texel of the G-buffer: the stencil aspect (s8_uint) or unsigned integers (r8_uint).
-    // Without ArealightPassOptions.stencil 0.
-    struct ArealightImage stencil;
     // Three numbers of 32 bits: how many lights, how many shapes, and how many of the first lights are
     // convex quads without a texture. Without ArealightPassOptions.light_counts 0.
     struct ArealightBuffer light_counts;
@@ -696,9 +715,6 @@ typedef struct ArealightShadowResources {
     // before the first frame and after each cut. The pass alone writes it; it is the same for all frames of
     // a view. Else 0.
     struct ArealightBuffer history;
-    // With AREALIGHT_SHADOW_HISTORY_MOTION: where a pixel's point was in the frame before less where it is,
-    // in parts of the image's width and height (rg16f). Else 0.
-    struct ArealightImage motion;
     // ArealightBlockerArrays.nodes. 0 with a module of the host's.
     struct ArealightBuffer blocker_nodes;
     // ArealightBlockerArrays.triangles; without triangles, any buffer. 0 with a module of the host's.
@@ -1255,26 +1271,18 @@ AREALIGHT_ASSERT(sizeof(ArealightImage) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightImage, view) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightImage, layout) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightImage, reserved) == 12);
-AREALIGHT_ASSERT(sizeof(ArealightResources) == 360);
+AREALIGHT_ASSERT(sizeof(ArealightResources) == 376);
 AREALIGHT_ASSERT(offsetof(ArealightResources, lights) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightResources, light_vertices) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightResources, shapes) == 48);
-AREALIGHT_ASSERT(offsetof(ArealightResources, position) == 72);
-AREALIGHT_ASSERT(offsetof(ArealightResources, normal) == 88);
-AREALIGHT_ASSERT(offsetof(ArealightResources, base_color) == 104);
-AREALIGHT_ASSERT(offsetof(ArealightResources, specular) == 120);
-AREALIGHT_ASSERT(offsetof(ArealightResources, coat) == 136);
-AREALIGHT_ASSERT(offsetof(ArealightResources, sheen) == 152);
-AREALIGHT_ASSERT(offsetof(ArealightResources, anisotropy) == 168);
-AREALIGHT_ASSERT(offsetof(ArealightResources, film) == 184);
-AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 200);
-AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 216);
-AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 232);
-AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 248);
-AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 272);
-AREALIGHT_ASSERT(offsetof(ArealightResources, shadow_picks) == 296);
-AREALIGHT_ASSERT(offsetof(ArealightResources, stencil) == 320);
-AREALIGHT_ASSERT(offsetof(ArealightResources, light_counts) == 336);
+AREALIGHT_ASSERT(offsetof(ArealightResources, planes) == 72);
+AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 232);
+AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 248);
+AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 264);
+AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 280);
+AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 304);
+AREALIGHT_ASSERT(offsetof(ArealightResources, shadow_picks) == 328);
+AREALIGHT_ASSERT(offsetof(ArealightResources, light_counts) == 352);
 AREALIGHT_ASSERT(sizeof(ArealightViewport) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, x) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, y) == 4);
@@ -1304,13 +1312,12 @@ AREALIGHT_ASSERT(sizeof(ArealightShadowOptions) == 12);
 AREALIGHT_ASSERT(offsetof(ArealightShadowOptions, filter) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightShadowOptions, history) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightShadowOptions, output) == 8);
-AREALIGHT_ASSERT(sizeof(ArealightShadowResources) == 120);
+AREALIGHT_ASSERT(sizeof(ArealightShadowResources) == 104);
 AREALIGHT_ASSERT(offsetof(ArealightShadowResources, shadow) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightShadowResources, radiance) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightShadowResources, history) == 32);
-AREALIGHT_ASSERT(offsetof(ArealightShadowResources, motion) == 56);
-AREALIGHT_ASSERT(offsetof(ArealightShadowResources, blocker_nodes) == 72);
-AREALIGHT_ASSERT(offsetof(ArealightShadowResources, blocker_triangles) == 96);
+AREALIGHT_ASSERT(offsetof(ArealightShadowResources, blocker_nodes) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightShadowResources, blocker_triangles) == 80);
 AREALIGHT_ASSERT(sizeof(ArealightShadowFrame) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, frame) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, host_set) == 8);

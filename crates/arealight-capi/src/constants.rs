@@ -6,7 +6,7 @@ pub const AREALIGHT_EFFECT_DIFFUSE: u32 = 1;
 pub const AREALIGHT_EFFECT_GLOSSY: u32 = 2;
 /// Some light lights both of its sides.
 pub const AREALIGHT_EFFECT_TWO_SIDED: u32 = 4;
-/// Some surface has a dielectric reflectance of its own: ArealightResources.specular is read.
+/// Some surface has a dielectric reflectance of its own: AREALIGHT_PLANE_SPECULAR is read.
 pub const AREALIGHT_EFFECT_SPECULAR_INPUT: u32 = 8;
 /// Some light is concave, not quite flat, or has more than four vertices.
 pub const AREALIGHT_EFFECT_POLYGON: u32 = 16;
@@ -23,7 +23,7 @@ pub const AREALIGHT_EFFECT_MESH: u32 = 2048;
 /// Some disk or ellipse is textured: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is
 /// set then, too.
 pub const AREALIGHT_EFFECT_TEXTURED_ELLIPSE: u32 = 4096;
-/// Some surface has a clear coat: ArealightResources.coat is read.
+/// Some surface has a clear coat: AREALIGHT_PLANE_COAT is read.
 pub const AREALIGHT_EFFECT_COAT: u32 = 8192;
 /// Some coat has a normal of its own. AREALIGHT_EFFECT_COAT is set then, too.
 pub const AREALIGHT_EFFECT_COAT_NORMAL: u32 = 16384;
@@ -35,18 +35,18 @@ pub const AREALIGHT_EFFECT_COUPLED_BY_ALBEDO: u32 = 65536;
 /// What is below a coat gets what the coat's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COAT is set then,
 /// too.
 pub const AREALIGHT_EFFECT_COAT_BY_ALBEDO: u32 = 131072;
-/// Some diffuse lobe is rough: ArealightResources.anisotropy is read.
+/// Some diffuse lobe is rough: AREALIGHT_PLANE_ANISOTROPY is read.
 pub const AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS: u32 = 262144;
-/// Some surface has sheen: ArealightResources.sheen is read.
+/// Some surface has sheen: AREALIGHT_PLANE_SHEEN is read.
 pub const AREALIGHT_EFFECT_SHEEN: u32 = 524288;
-/// Some surface's specular lobe has two roughnesses: ArealightResources.anisotropy is read.
+/// Some surface's specular lobe has two roughnesses: AREALIGHT_PLANE_ANISOTROPY is read.
 pub const AREALIGHT_EFFECT_ANISOTROPY: u32 = 1048576;
 /// What specular lobes' facets reflect more than once is added, as in OpenPBR; else it is lost, as in glTF.
 pub const AREALIGHT_EFFECT_MULTIPLE_SCATTERING: u32 = 2097152;
 /// The pass is of light that thin surfaces let through: what the G-buffer holds is shaded from behind, for a
 /// pass of its own whose base colour is the part of the light that is let through.
 pub const AREALIGHT_EFFECT_TRANSMISSION: u32 = 4194304;
-/// Some surface has a thin film that its reflectances lack: ArealightResources.film is read.
+/// Some surface has a thin film that its reflectances lack: AREALIGHT_PLANE_FILM is read.
 pub const AREALIGHT_EFFECT_THIN_FILM: u32 = 8388608;
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
@@ -78,7 +78,41 @@ pub const AREALIGHT_FOOTPRINT_ELLIPSE: u32 = 1;
 /// With four by four parts of the light, a form factor and two fetches each.
 pub const AREALIGHT_FOOTPRINT_SPLIT: u32 = 2;
 
-/// ArealightResources.position holds positions; w = 0 where there is no surface.
+/// Positions relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f). As the
+/// next ones, an index into ArealightResources.planes.
+pub const AREALIGHT_PLANE_POSITION: u32 = 0;
+/// Shading normal in xyz, of any length; perceptual roughness in w (rgba16f, rgba32f for mirrors). By
+/// AREALIGHT_G_BUFFER_*, as the next two.
+pub const AREALIGHT_PLANE_NORMAL: u32 = 1;
+/// Linear base colour in rgb, metalness in a (rgba8).
+pub const AREALIGHT_PLANE_BASE_COLOR: u32 = 2;
+/// Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT, in a pass with
+/// AREALIGHT_G_BUFFER_AREALIGHT.
+pub const AREALIGHT_PLANE_SPECULAR: u32 = 3;
+/// Of clear coats: weight in r, perceptual roughness in g (rg8), and with AREALIGHT_EFFECT_COAT_NORMAL the
+/// coat's normal in ba, as its place in [-1, 1] x [-1, 1] on an unfolded octahedron (rgba16f). May be 0
+/// without AREALIGHT_EFFECT_COAT.
+pub const AREALIGHT_PLANE_COAT: u32 = 4;
+/// Of sheen: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without
+/// AREALIGHT_EFFECT_SHEEN.
+pub const AREALIGHT_PLANE_SHEEN: u32 = 5;
+/// Of lobes of two roughnesses: the tangent in rg, as its place in [-1, 1] x [-1, 1] on an unfolded
+/// octahedron, perceptual roughness along it in b, 0 where there is one roughness; and the roughness of the
+/// diffuse lobe in a (rgba16f). May be 0 without AREALIGHT_EFFECT_ANISOTROPY and _DIFFUSE_ROUGHNESS.
+pub const AREALIGHT_PLANE_ANISOTROPY: u32 = 6;
+/// Of thin films: how much of the surface one covers in r, its index of refraction in g, its thickness in
+/// nanometres in b (rgba16f). May be 0 without AREALIGHT_EFFECT_THIN_FILM.
+pub const AREALIGHT_PLANE_FILM: u32 = 7;
+/// A stencil for each texel: the stencil aspect (s8_uint) or unsigned integers (r8_uint). May be 0 without
+/// ArealightPassOptions.stencil.
+pub const AREALIGHT_PLANE_STENCIL: u32 = 8;
+/// Where a pixel's point was in the frame before less where it is, in parts of the image's width and height
+/// (rg16f). May be 0 but for a shadow pass with AREALIGHT_SHADOW_HISTORY_MOTION.
+pub const AREALIGHT_PLANE_MOTION: u32 = 9;
+/// How many planes there are.
+pub const AREALIGHT_PLANE_COUNT: usize = 10;
+
+/// AREALIGHT_PLANE_POSITION holds positions; w = 0 where there is no surface.
 pub const AREALIGHT_POSITION_IMAGE: u32 = 0;
 /// It holds depth as stored; exactly 0 or 1 where there is no surface.
 pub const AREALIGHT_POSITION_DEPTH: u32 = 1;
@@ -97,7 +131,7 @@ pub const AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS: u32 = 1;
 /// Without sets: arealight_pass_record_pushed. The device was made with VK_KHR_push_descriptor.
 pub const AREALIGHT_DESCRIPTORS_PUSHED: u32 = 2;
 
-/// What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and
+/// What AREALIGHT_PLANE_NORMAL, _BASE_COLOR and _SPECULAR hold: normal and roughness; base colour and
 /// metalness; dielectric F0 and F90.
 pub const AREALIGHT_G_BUFFER_AREALIGHT: u32 = 0;
 /// Unreal Engine's `GBufferA`, `GBufferC` and `GBufferB`, of its default shading model.
@@ -168,3 +202,30 @@ pub const AREALIGHT_WRAP_MIRROR: u32 = 2;
 
 /// The range of an ArealightBuffer from its offset to its end.
 pub const AREALIGHT_WHOLE_SIZE: u64 = u64::MAX;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use arealight::Plane;
+
+    #[test]
+    fn planes_have_the_numbers_of_the_table() {
+        let constants = [
+            (Plane::Position, AREALIGHT_PLANE_POSITION),
+            (Plane::Normal, AREALIGHT_PLANE_NORMAL),
+            (Plane::BaseColor, AREALIGHT_PLANE_BASE_COLOR),
+            (Plane::Specular, AREALIGHT_PLANE_SPECULAR),
+            (Plane::Coat, AREALIGHT_PLANE_COAT),
+            (Plane::Sheen, AREALIGHT_PLANE_SHEEN),
+            (Plane::Anisotropy, AREALIGHT_PLANE_ANISOTROPY),
+            (Plane::Film, AREALIGHT_PLANE_FILM),
+            (Plane::Stencil, AREALIGHT_PLANE_STENCIL),
+            (Plane::Motion, AREALIGHT_PLANE_MOTION),
+        ];
+        assert_eq!(constants.map(|(plane, _)| plane), Plane::ALL);
+        for (plane, number) in constants {
+            assert_eq!(number, plane as u32, "{plane:?}");
+        }
+        assert_eq!(AREALIGHT_PLANE_COUNT, Plane::COUNT);
+    }
+}

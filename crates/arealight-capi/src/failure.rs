@@ -63,7 +63,7 @@ impl From<Error> for Failure {
 fn in_words_of_c(message: &str) -> String {
     let names = [
         ("ShadeOptions::MOST_SHADOW_RAYS", "4"),
-        ("ShadeOptions::reads_", "ArealightResources."),
+        ("ShadeOptions::reads", "AREALIGHT_PLANE_* and ArealightResources.planes"),
         ("ShadeOptions::", "ArealightPassOptions."),
         ("ShadowOptions::", "ArealightShadowOptions."),
     ];
@@ -126,12 +126,12 @@ mod tests {
             Failure::from(Error::InvalidArgument { field: "offset", message: message.into() }).message
         };
         let text = failure(
-            "made without ShadeOptions::rectangle; see ShadeOptions::reads_coat and ShadowOptions::output",
+            "made without ShadeOptions::rectangle; see ShadeOptions::reads and ShadowOptions::output",
         );
         assert!(
             text.contains(
-                "ArealightPassOptions.rectangle; see ArealightResources.coat and \
-        ArealightShadowOptions.output"
+                "ArealightPassOptions.rectangle; see AREALIGHT_PLANE_* and \
+                 ArealightResources.planes and ArealightShadowOptions.output"
             ),
             "{text}"
         );

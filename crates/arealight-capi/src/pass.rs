@@ -12,6 +12,7 @@ use crate::types::{
     ArealightSetLayout, ArealightTileMemory, ArealightViewport,
 };
 use crate::{arguments, handles};
+use arealight::{Plane, Planes};
 use arealight_vk::ash::vk::{self, Handle as _};
 use arealight_vk::{
     Bound, Descriptors, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources, StencilTest, Viewport,
@@ -193,20 +194,12 @@ pub(crate) fn read_resources(
     let table = arealight.table_resource().ok_or_else(|| {
         Failure::argument("arealight: its table has no memory yet; call arealight_table_bind_memory first")
     })?;
-    for (image, field) in [
-        (resources.position, "position"),
-        (resources.normal, "normal"),
-        (resources.base_color, "base_color"),
-        (resources.specular, "specular"),
-        (resources.coat, "coat"),
-        (resources.sheen, "sheen"),
-        (resources.anisotropy, "anisotropy"),
-        (resources.film, "film"),
+    let planes = Plane::ALL.map(|plane| (resources.planes[plane as usize], plane.name()));
+    for (image, field) in planes.into_iter().chain([
         (resources.light_textures, "light_textures"),
         (resources.radiance, "radiance"),
         (resources.glossy, "glossy"),
-        (resources.stencil, "stencil"),
-    ] {
+    ]) {
         arguments::refuse_reserved(image.reserved, &format!("resources.{field}.reserved"))?;
     }
     Ok(ShadeResources {
@@ -215,17 +208,12 @@ pub(crate) fn read_resources(
         light_vertices: buffer(resources.light_vertices),
         shapes: (resources.shapes.buffer != 0).then(|| buffer(resources.shapes)),
         light_textures: (resources.light_textures.view != 0).then(|| filtered(resources.light_textures)),
-        position: sampled(resources.position),
-        normal: sampled(resources.normal),
-        base_color: sampled(resources.base_color),
-        specular: (resources.specular.view != 0).then(|| sampled(resources.specular)),
-        coat: (resources.coat.view != 0).then(|| sampled(resources.coat)),
-        sheen: (resources.sheen.view != 0).then(|| sampled(resources.sheen)),
-        anisotropy: (resources.anisotropy.view != 0).then(|| sampled(resources.anisotropy)),
-        film: (resources.film.view != 0).then(|| sampled(resources.film)),
+        planes: Planes::from_fn(|plane| {
+            let image = resources.planes[plane as usize];
+            (image.view != 0).then(|| sampled(image))
+        }),
         radiance: stored(resources.radiance),
         glossy: (resources.glossy.view != 0).then(|| stored(resources.glossy)),
-        stencil: (resources.stencil.view != 0).then(|| sampled(resources.stencil)),
         light_counts: (resources.light_counts.buffer != 0).then(|| buffer(resources.light_counts)),
         picks: (resources.shadow_picks.buffer != 0).then(|| buffer(resources.shadow_picks)),
         ..ShadeResources::default()

@@ -4,7 +4,7 @@ use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
 use crate::lights::{check_size, copy};
 use crate::options::{level, shade_options};
-use crate::pass::{ArealightPass, buffer, read_frame, read_resources, sampled, set_layout, stored};
+use crate::pass::{ArealightPass, buffer, read_frame, read_resources, set_layout, stored};
 use crate::types::{
     ArealightBlockerArrays, ArealightBuffer, ArealightFrame, ArealightPassOptions, ArealightResources,
     ArealightSetLayout, ArealightShadowFrame, ArealightShadowOptions, ArealightShadowResources,
@@ -284,7 +284,6 @@ fn read_shadow_resources(resources: &ArealightShadowResources) -> ShadowResource
         shadow: stored(resources.shadow),
         radiance: (resources.radiance.view != 0).then(|| stored(resources.radiance)),
         history: given(resources.history),
-        motion: (resources.motion.view != 0).then(|| sampled(resources.motion)),
         blockers: blockers.map(|(nodes, triangles)| BlockerResources { nodes, triangles }),
     }
 }

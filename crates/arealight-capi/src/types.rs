@@ -3,6 +3,7 @@
 //! Handles of Vulkan: those that are pointers everywhere (instance, device, command buffer) are `void *`, all
 //! others `uint64_t`, so that vulkan.h is not needed.
 
+use crate::constants::AREALIGHT_PLANE_COUNT;
 use std::ffi::{c_char, c_void};
 
 /// A function of Vulkan, as vkGetInstanceProcAddr returns it.
@@ -134,7 +135,7 @@ pub struct ArealightPassOptions {
     /// How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. Radiance
     /// is the mean over them. Not with shadow rays or half resolution. 0 is 1.
     pub samples: u32,
-    /// 1: frames have a stencil test, by ArealightResources.stencil; pixels that fail it stay as they are;
+    /// 1: frames have a stencil test, by AREALIGHT_PLANE_STENCIL; pixels that fail it stay as they are;
     /// without shadow rays. Else 0.
     pub stencil: u32,
     /// 1: how many lights a frame has is read from ArealightResources.light_counts when the commands run;
@@ -299,30 +300,8 @@ pub struct ArealightResources {
     pub light_vertices: ArealightBuffer,
     /// ArealightPackedLights.shapes. May be 0 where no frame has disks, spheres or tubes.
     pub shapes: ArealightBuffer,
-    /// Positions relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f).
-    pub position: ArealightImage,
-    /// Shading normal in xyz, of any length; perceptual roughness in w (rgba16f, rgba32f for mirrors).
-    pub normal: ArealightImage,
-    /// Linear base colour in rgb, metalness in a (rgba8).
-    pub base_color: ArealightImage,
-    /// Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT, in a pass
-    /// with AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
-    pub specular: ArealightImage,
-    /// Of clear coats, in every layout: weight in r, perceptual roughness in g (rg8), and with
-    /// AREALIGHT_EFFECT_COAT_NORMAL the coat's normal in ba, as its place in [-1, 1] x [-1, 1] on an unfolded
-    /// octahedron (rgba16f). May be 0 without AREALIGHT_EFFECT_COAT.
-    pub coat: ArealightImage,
-    /// Of sheen, in every layout: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without
-    /// AREALIGHT_EFFECT_SHEEN.
-    pub sheen: ArealightImage,
-    /// Of lobes of two roughnesses, in every layout: the tangent in rg, as its place in [-1, 1] x [-1, 1] on
-    /// an unfolded octahedron, perceptual roughness along it in b, 0 where there is one roughness; and the
-    /// roughness of the diffuse lobe in a (rgba16f). May be 0 without AREALIGHT_EFFECT_ANISOTROPY and
-    /// _DIFFUSE_ROUGHNESS.
-    pub anisotropy: ArealightImage,
-    /// Of thin films, in every layout: how much of the surface one covers in r, its index of refraction in g,
-    /// its thickness in nanometres in b (rgba16f). May be 0 without AREALIGHT_EFFECT_THIN_FILM.
-    pub film: ArealightImage,
+    /// The G-buffer, by AREALIGHT_PLANE_*. What a pass does not read may be 0.
+    pub planes: [ArealightImage; AREALIGHT_PLANE_COUNT],
     /// The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that
     /// `arealight export` describes. May be 0 where no frame has textured lights.
     pub light_textures: ArealightImage,
@@ -338,9 +317,6 @@ pub struct ArealightResources {
     pub tile_lists: ArealightBuffer,
     /// Of arealight_pass_shadow_picks_size bytes. Without shadow rays 0.
     pub shadow_picks: ArealightBuffer,
-    /// A stencil for each texel of the G-buffer: the stencil aspect (s8_uint) or unsigned integers (r8_uint).
-    /// Without ArealightPassOptions.stencil 0.
-    pub stencil: ArealightImage,
     /// Three numbers of 32 bits: how many lights, how many shapes, and how many of the first lights are
     /// convex quads without a texture. Without ArealightPassOptions.light_counts 0.
     pub light_counts: ArealightBuffer,
@@ -443,9 +419,6 @@ pub struct ArealightShadowResources {
     /// before the first frame and after each cut. The pass alone writes it; it is the same for all frames of
     /// a view. Else 0.
     pub history: ArealightBuffer,
-    /// With AREALIGHT_SHADOW_HISTORY_MOTION: where a pixel's point was in the frame before less where it is,
-    /// in parts of the image's width and height (rg16f). Else 0.
-    pub motion: ArealightImage,
     /// ArealightBlockerArrays.nodes. 0 with a module of the host's.
     pub blocker_nodes: ArealightBuffer,
     /// ArealightBlockerArrays.triangles; without triangles, any buffer. 0 with a module of the host's.

@@ -1,26 +1,26 @@
 //! Which formats the images of a host may have.
 
 use crate::error::Error;
-use arealight::Effects;
 use arealight::plan::{GBufferLayout, RadianceFormat, ShadeOptions};
+use arealight::planes::Texels;
+use arealight::{Effects, Plane, Planes};
 use ash::vk::Format;
 
 /// The formats of the images that a host binds to the shade pass, which their views do not tell: check them
 /// once, where the images are made.
 ///
 /// ```
-/// use arealight::plan::ShadeOptions;
+/// use arealight::{Plane, plan::ShadeOptions};
 /// use arealight_vk::{ShadeFormats, ash::vk::Format};
 ///
 /// let formats = ShadeFormats {
-///     position: Format::D32_SFLOAT,
-///     normal: Format::R16G16B16A16_SFLOAT,
-///     base_color: Format::R8G8B8A8_SRGB,
-///     specular: Format::UNDEFINED, // not read without Effects::SPECULAR_INPUT
-///     coat: Format::UNDEFINED, // not read without Effects::COAT
-///     sheen: Format::UNDEFINED, // not read without Effects::SHEEN
-///     anisotropy: Format::UNDEFINED, // nor this without Effects::ANISOTROPY or DIFFUSE_ROUGHNESS
-///     film: Format::UNDEFINED, // nor this without Effects::THIN_FILM
+///     // What is not read needs none
+///     planes: [
+///         (Plane::Position, Format::D32_SFLOAT),
+///         (Plane::Normal, Format::R16G16B16A16_SFLOAT),
+///         (Plane::BaseColor, Format::R8G8B8A8_SRGB),
+///     ]
+///     .into(),
 ///     radiance: Format::R32G32B32A32_SFLOAT,
 /// };
 /// let options = ShadeOptions { from_depth: true, ..ShadeOptions::default() };
@@ -29,25 +29,8 @@ use ash::vk::Format;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ShadeFormats {
-    /// Of [`crate::ShadeResources::position`]: float32 positions, or depth, by [`ShadeOptions::from_depth`].
-    pub position: Format,
-    /// Of [`crate::ShadeResources::normal`]: signed, with four channels, or as [`ShadeOptions::g_buffer`] has
-    /// it.
-    pub normal: Format,
-    /// Of [`crate::ShadeResources::base_color`]: with four channels.
-    pub base_color: Format,
-    /// Of [`crate::ShadeResources::specular`], where [`ShadeOptions::reads_specular`].
-    pub specular: Format,
-    /// Of [`crate::ShadeResources::coat`], where [`ShadeOptions::reads_coat`]: two channels, or with
-    /// [`Effects::COAT_NORMAL`] four, signed.
-    pub coat: Format,
-    /// Of [`crate::ShadeResources::sheen`], where [`ShadeOptions::reads_sheen`]: with four channels.
-    pub sheen: Format,
-    /// Of [`crate::ShadeResources::anisotropy`], where [`ShadeOptions::reads_anisotropy`]: signed or float,
-    /// with four channels.
-    pub anisotropy: Format,
-    /// Of [`crate::ShadeResources::film`], where [`ShadeOptions::reads_film`]: float, with four channels.
-    pub film: Format,
+    /// Of [`crate::ShadeResources::planes`], each that [`ShadeOptions::reads`].
+    pub planes: Planes<Format>,
     /// Of [`crate::ShadeResources::radiance`] and [`crate::ShadeResources::glossy`], by
     /// [`ShadeOptions::format`].
     pub radiance: Format,
@@ -116,7 +99,20 @@ const DIRECTION: &[Format] = &[
     Format::R16G16B16A16_SFLOAT,
     Format::R32G32B32A32_SFLOAT,
 ];
-const FILM: &[Format] = &[Format::R16G16B16A16_SFLOAT, Format::R32G32B32A32_SFLOAT];
+const FLOATS: &[Format] = &[Format::R16G16B16A16_SFLOAT, Format::R32G32B32A32_SFLOAT];
+const OFFSETS: &[Format] =
+    &[Format::R16G16_SFLOAT, Format::R32G32_SFLOAT, Format::R16G16B16A16_SFLOAT, Format::R32G32B32A32_SFLOAT];
+const STENCIL: &[Format] = &[
+    Format::S8_UINT,
+    Format::D16_UNORM_S8_UINT,
+    Format::D24_UNORM_S8_UINT,
+    Format::D32_SFLOAT_S8_UINT,
+    Format::R8_UINT,
+    Format::R8G8_UINT,
+    Format::R8G8B8A8_UINT,
+    Format::R16_UINT,
+    Format::R32_UINT,
+];
 const RADIANCE: &[Format] = &[Format::R32G32B32A32_SFLOAT];
 const RADIANCE_HALF: &[Format] = &[Format::R16G16B16A16_SFLOAT];
 
@@ -126,31 +122,14 @@ impl ShadeFormats {
     /// # Errors
     /// [`Error::WrongFormat`] names the first image of another format, and the formats that will do.
     pub fn check(&self, options: ShadeOptions) -> Result<(), Error> {
-        let position = if options.from_depth { DEPTH } else { POSITION };
         let radiance = match options.format {
             RadianceFormat::Rgba32Float => RADIANCE,
             RadianceFormat::Rgba16Float => RADIANCE_HALF,
         };
-        let normal = match options.g_buffer {
-            GBufferLayout::Arealight => NORMAL,
-            GBufferLayout::Unreal => NORMAL_UNSIGNED,
-            GBufferLayout::Unity => NORMAL_UNITY,
-            GBufferLayout::Octahedral => OCTAHEDRAL,
-        };
-        let coat = if options.surfaces.contains(Effects::COAT_NORMAL) { DIRECTION } else { COAT };
-        let images = [
-            ("position", self.position, position, true),
-            ("normal", self.normal, normal, true),
-            ("base_color", self.base_color, COLOR, true),
-            ("specular", self.specular, COLOR, options.reads_specular()),
-            ("coat", self.coat, coat, options.reads_coat()),
-            ("sheen", self.sheen, COLOR, options.reads_sheen()),
-            ("anisotropy", self.anisotropy, DIRECTION, options.reads_anisotropy()),
-            ("film", self.film, FILM, options.reads_film()),
-            ("radiance", self.radiance, radiance, true),
-        ];
-        for (field, format, expected, used) in images {
-            if used && !expected.contains(&format) {
+        let planes = self.planes.iter().filter(|(plane, _)| options.reads(*plane));
+        let planes = planes.map(|(plane, format)| (plane.name(), *format, formats_of(plane, options)));
+        for (field, format, expected) in planes.chain([("radiance", self.radiance, radiance)]) {
+            if !expected.contains(&format) {
                 return Err(Error::WrongFormat { field, format, expected });
             }
         }
@@ -158,21 +137,40 @@ impl ShadeFormats {
     }
 }
 
+/// What a plane may be, to a pass of these options.
+fn formats_of(plane: Plane, options: ShadeOptions) -> &'static [Format] {
+    match (plane.texels(), options.g_buffer) {
+        (Texels::Positions, _) if options.from_depth => DEPTH,
+        (Texels::Positions, _) => POSITION,
+        (Texels::Normals, GBufferLayout::Arealight) => NORMAL,
+        (Texels::Normals, GBufferLayout::Unreal) => NORMAL_UNSIGNED,
+        (Texels::Normals, GBufferLayout::Unity) => NORMAL_UNITY,
+        (Texels::Normals, GBufferLayout::Octahedral) => OCTAHEDRAL,
+        (Texels::Weights, _) if options.surfaces.contains(Effects::COAT_NORMAL) => DIRECTION,
+        (Texels::Weights, _) => COAT,
+        (Texels::Colors, _) => COLOR,
+        (Texels::Directions, _) => DIRECTION,
+        (Texels::Floats, _) => FLOATS,
+        (Texels::Integers, _) => STENCIL,
+        (Texels::Offsets, _) => OFFSETS,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const RIGHT: ShadeFormats = ShadeFormats {
-        position: Format::R32G32B32A32_SFLOAT,
-        normal: Format::R16G16B16A16_SFLOAT,
-        base_color: Format::R8G8B8A8_SRGB,
-        specular: Format::R8G8B8A8_UNORM,
-        coat: Format::R16G16B16A16_SFLOAT,
-        sheen: Format::R16G16B16A16_SFLOAT,
-        anisotropy: Format::R16G16B16A16_SFLOAT,
-        film: Format::R16G16B16A16_SFLOAT,
-        radiance: Format::R32G32B32A32_SFLOAT,
-    };
+    fn right() -> ShadeFormats {
+        let planes = Planes::from_fn(|_| Format::R16G16B16A16_SFLOAT)
+            .with(Plane::Position, Format::R32G32B32A32_SFLOAT)
+            .with(Plane::BaseColor, Format::R8G8B8A8_SRGB)
+            .with(Plane::Specular, Format::R8G8B8A8_UNORM);
+        ShadeFormats { planes, radiance: Format::R32G32B32A32_SFLOAT }
+    }
+
+    fn with(plane: Plane, format: Format) -> ShadeFormats {
+        ShadeFormats { planes: right().planes.with(plane, format), ..right() }
+    }
 
     fn field(formats: ShadeFormats, options: ShadeOptions) -> &'static str {
         match formats.check(options).unwrap_err() {
@@ -184,15 +182,18 @@ mod tests {
     #[test]
     fn formats_that_will_do_pass() {
         let all = ShadeOptions { surfaces: Effects::SURFACES, ..ShadeOptions::default() };
-        RIGHT.check(all).unwrap();
+        right().check(all).unwrap();
         let depth = ShadeOptions { from_depth: true, ..all };
-        ShadeFormats { position: Format::D24_UNORM_S8_UINT, ..RIGHT }.check(depth).unwrap();
-        let unread = ShadeFormats { specular: Format::UNDEFINED, coat: Format::UNDEFINED, ..RIGHT };
+        with(Plane::Position, Format::D24_UNORM_S8_UINT).check(depth).unwrap();
+        let unread = ShadeFormats {
+            planes: with(Plane::Specular, Format::UNDEFINED).planes.with(Plane::Coat, Format::UNDEFINED),
+            ..right()
+        };
         unread.check(ShadeOptions::default()).unwrap();
         let flat_coats = ShadeOptions { surfaces: Effects::COAT, ..ShadeOptions::default() };
-        ShadeFormats { coat: Format::R8G8_UNORM, ..RIGHT }.check(flat_coats).unwrap();
+        with(Plane::Coat, Format::R8G8_UNORM).check(flat_coats).unwrap();
         let half = ShadeOptions { format: RadianceFormat::Rgba16Float, ..all };
-        ShadeFormats { radiance: Format::R16G16B16A16_SFLOAT, ..RIGHT }.check(half).unwrap();
+        ShadeFormats { radiance: Format::R16G16B16A16_SFLOAT, ..right() }.check(half).unwrap();
     }
 
     #[test]
@@ -200,31 +201,41 @@ mod tests {
         let options = ShadeOptions { surfaces: Effects::SURFACES, ..ShadeOptions::default() };
         // Rounded positions, unsigned normals, integers, three channels, and what the kernel cannot store to
         for (formats, expected) in [
-            (ShadeFormats { position: Format::R16G16B16A16_SFLOAT, ..RIGHT }, "position"),
-            (ShadeFormats { position: Format::D32_SFLOAT, ..RIGHT }, "position"),
-            (ShadeFormats { normal: Format::R8G8B8A8_UNORM, ..RIGHT }, "normal"),
-            (ShadeFormats { base_color: Format::R8G8B8A8_UINT, ..RIGHT }, "base_color"),
-            (ShadeFormats { specular: Format::B10G11R11_UFLOAT_PACK32, ..RIGHT }, "specular"),
-            (ShadeFormats { coat: Format::R8G8_UNORM, ..RIGHT }, "coat"),
-            (ShadeFormats { radiance: Format::R16G16B16A16_SFLOAT, ..RIGHT }, "radiance"),
+            (with(Plane::Position, Format::R16G16B16A16_SFLOAT), "position"),
+            (with(Plane::Position, Format::D32_SFLOAT), "position"),
+            (with(Plane::Normal, Format::R8G8B8A8_UNORM), "normal"),
+            (with(Plane::BaseColor, Format::R8G8B8A8_UINT), "base_color"),
+            (with(Plane::Specular, Format::B10G11R11_UFLOAT_PACK32), "specular"),
+            (with(Plane::Coat, Format::R8G8_UNORM), "coat"),
+            (with(Plane::Film, Format::R8G8B8A8_UNORM), "film"),
+            (ShadeFormats { radiance: Format::R16G16B16A16_SFLOAT, ..right() }, "radiance"),
         ] {
             assert_eq!(field(formats, options), expected);
         }
         let depth = ShadeOptions { from_depth: true, ..options };
-        assert_eq!(field(RIGHT, depth), "position");
+        assert_eq!(field(right(), depth), "position");
         // A layout's normals, and its third image, which is read whatever surfaces need
         let unreal = ShadeOptions { g_buffer: GBufferLayout::Unreal, ..ShadeOptions::default() };
-        let ten_bits = ShadeFormats { normal: Format::A2B10G10R10_UNORM_PACK32, ..RIGHT };
+        let ten_bits = with(Plane::Normal, Format::A2B10G10R10_UNORM_PACK32);
         ten_bits.check(unreal).unwrap();
         assert_eq!(field(ten_bits, options), "normal");
-        assert_eq!(field(ShadeFormats { specular: Format::UNDEFINED, ..ten_bits }, unreal), "specular");
+        assert_eq!(
+            field(
+                ShadeFormats { planes: ten_bits.planes.with(Plane::Specular, Format::UNDEFINED), ..ten_bits },
+                unreal
+            ),
+            "specular"
+        );
         let octahedral = ShadeOptions { g_buffer: GBufferLayout::Octahedral, ..unreal };
         assert_eq!(field(ten_bits, octahedral), "normal");
         let unity = ShadeOptions { g_buffer: GBufferLayout::Unity, ..unreal };
         assert_eq!(field(ten_bits, unity), "normal");
+        let stencil = ShadeOptions { stencil: true, ..options };
+        assert_eq!(field(right(), stencil), "stencil");
+        with(Plane::Stencil, Format::S8_UINT).check(stencil).unwrap();
         let half = ShadeOptions { format: RadianceFormat::Rgba16Float, ..options };
-        assert_eq!(field(RIGHT, half), "radiance");
-        let error = ShadeFormats { radiance: Format::R8G8B8A8_UNORM, ..RIGHT }.check(options).unwrap_err();
+        assert_eq!(field(right(), half), "radiance");
+        let error = ShadeFormats { radiance: Format::R8G8B8A8_UNORM, ..right() }.check(options).unwrap_err();
         assert_eq!(
             error.to_string(),
             "radiance: the format is R8G8B8A8_UNORM; it must be one of R32G32B32A32_SFLOAT"

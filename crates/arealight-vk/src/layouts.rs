@@ -3,7 +3,7 @@
 use crate::context::Context;
 use crate::error::{Error, VulkanCall};
 use crate::resource::Resource;
-use arealight::kernels::{Binding, BindingKind, Kernel, LIGHT_VERTICES, LIGHTS, SHAPES};
+use arealight::kernels::{Binding, BindingKind, Kernel};
 use ash::vk;
 use std::sync::Arc;
 
@@ -40,8 +40,8 @@ pub enum Descriptors {
 pub(crate) struct Layouts {
     context: Context,
     kernel: &'static Kernel,
-    /// The kernel's, or the first of them.
-    bindings: &'static [Binding],
+    /// The kernel's, or some of them.
+    bindings: Vec<Binding>,
     /// Of set 1, where a module of the host's reads what is the host's.
     host_set: Option<vk::DescriptorSetLayout>,
     /// How set 0 gets at resources.
@@ -63,21 +63,22 @@ impl Layouts {
     /// They are dropped before the device is destroyed, when no recorded use of them is pending.
     pub(crate) unsafe fn new(context: &Context, kernel: &'static Kernel) -> Result<Arc<Self>, Error> {
         // SAFETY: the same contract.
-        unsafe { Self::with(context, kernel, kernel.bindings, (Descriptors::Sets, None)) }
+        unsafe { Self::with(context, kernel, kernel.bindings().to_vec(), (Descriptors::Sets, None)) }
     }
 
-    /// As [`Layouts::new`], with no more of the kernel's first bindings than its pipelines use, with how set
-    /// 0 gets at resources, and with the layout of a second set, which is the host's.
+    /// As [`Layouts::new`], with no more of the kernel's bindings than its pipelines use, with how set 0 gets
+    /// at resources, and with the layout of a second set, which is the host's.
     ///
     /// # Safety
     /// As [`Layouts::new`]; the layout is valid until they are dropped.
     pub(crate) unsafe fn with(
         context: &Context,
         kernel: &'static Kernel,
-        bindings: &'static [Binding],
+        bindings: Vec<Binding>,
         (descriptors, host_set): (Descriptors, Option<vk::DescriptorSetLayout>),
     ) -> Result<Arc<Self>, Error> {
-        check_limits(context, kernel, bindings)?;
+        check_limits(context, kernel, &bindings)?;
+        let is_filtered = bindings.iter().any(|binding| binding.kind == BindingKind::FilteredImage);
         // Handles that were made before a later call fails are destroyed with these half-made layouts
         let mut layouts = Self {
             context: context.clone(),
@@ -90,7 +91,7 @@ impl Layouts {
             set_layout: vk::DescriptorSetLayout::null(),
             pipeline_layout: vk::PipelineLayout::null(),
         };
-        if bindings.iter().any(|binding| binding.kind == BindingKind::FilteredImage) {
+        if is_filtered {
             layouts.make_sampler()?;
         }
         layouts.make_layouts()?;
@@ -109,11 +110,12 @@ impl Layouts {
     fn make_layouts(&mut self) -> Result<(), Error> {
         let device = &self.context.device;
         let samplers = [self.sampler];
-        let bindings: Vec<_> = (0u32..)
-            .zip(self.bindings)
-            .map(|(number, binding)| {
+        let bindings: Vec<_> = self
+            .bindings
+            .iter()
+            .map(|binding| {
                 let layout = vk::DescriptorSetLayoutBinding::default()
-                    .binding(number)
+                    .binding(binding.number)
                     .descriptor_type(self.descriptor_type(binding))
                     .descriptor_count(1)
                     .stage_flags(vk::ShaderStageFlags::COMPUTE);
@@ -135,7 +137,7 @@ impl Layouts {
         let set_layouts: Vec<_> = std::iter::once(self.set_layout).chain(self.host_set).collect();
         let ranges = [vk::PushConstantRange::default()
             .stage_flags(vk::ShaderStageFlags::COMPUTE)
-            .size(self.kernel.push_constant_size)];
+            .size(self.kernel.push_constant_size())];
         let info =
             vk::PipelineLayoutCreateInfo::default().set_layouts(&set_layouts).push_constant_ranges(&ranges);
         // SAFETY: as above.
@@ -152,8 +154,8 @@ impl Layouts {
         self.pipeline_layout
     }
 
-    pub(crate) fn bindings(&self) -> &'static [Binding] {
-        self.bindings
+    pub(crate) fn bindings(&self) -> &[Binding] {
+        &self.bindings
     }
 
     /// Whether set 1 is the host's.
@@ -233,7 +235,7 @@ impl Layouts {
             // SAFETY: the caller vouches for the set and the resources; kinds were checked above.
             unsafe { self.context.device.update_descriptor_sets(writes, &[]) };
         });
-        self.context.written_sets.write(set, self.kernel, resources, absent);
+        self.context.written_sets.write(set, &self.bindings, resources, absent);
         Ok(())
     }
 
@@ -247,7 +249,8 @@ impl Layouts {
         }
         for (binding, resource) in self.bindings.iter().zip(resources) {
             if resource.is_null() {
-                return wrong(binding.name, format!("is a null handle; it must hold {}", binding.content));
+                let known = if binding.content.is_empty() { "what its kernel says" } else { binding.content };
+                return wrong(binding.name, format!("is a null handle; it must hold {known}"));
             }
             if resource.kind() != binding.kind {
                 let message = format!("is a {:?}, but must be a {:?}", resource.kind(), binding.kind);
@@ -274,13 +277,14 @@ impl Layouts {
         let images: Vec<[vk::DescriptorImageInfo; 1]> = resources.iter().map(|r| [image_info(*r)]).collect();
         let buffers: Vec<[vk::DescriptorBufferInfo; 1]> =
             resources.iter().map(|r| [buffer_info(*r)]).collect();
-        let writes: Vec<_> = (0u32..)
-            .zip(self.bindings)
+        let writes: Vec<_> = self
+            .bindings
+            .iter()
             .zip(images.iter().zip(&buffers))
-            .map(|((number, binding), (image, buffer))| {
+            .map(|(binding, (image, buffer))| {
                 let write = vk::WriteDescriptorSet::default()
                     .dst_set(set)
-                    .dst_binding(number)
+                    .dst_binding(binding.number)
                     .descriptor_type(self.descriptor_type(binding));
                 match binding.kind {
                     BindingKind::StorageBuffer => write.buffer_info(buffer),
@@ -376,14 +380,14 @@ impl Layouts {
     /// What [`ComputePass::record`] refuses of `kernel`, which is the layouts' own or another that they
     /// serve.
     pub(crate) fn check(&self, kernel: &Kernel, constants: &[u8], groups: [u32; 3]) -> Result<(), Error> {
-        if constants.len() != kernel.push_constant_size as usize {
+        if constants.len() != kernel.push_constant_size() as usize {
             return Err(Error::InvalidArgument {
                 field: "constants",
                 message: format!(
                     "{} bytes, but kernel '{}' takes {}",
                     constants.len(),
                     kernel.name,
-                    kernel.push_constant_size
+                    kernel.push_constant_size()
                 ),
             });
         }
@@ -437,7 +441,7 @@ fn check_limits(context: &Context, kernel: &'static Kernel, bindings: &[Binding]
 
 /// Whether it is a buffer of lights, which frames in a ring have each their own part of.
 fn is_of_lights(binding: &Binding) -> bool {
-    [LIGHTS.name, LIGHT_VERTICES.name, SHAPES.name].contains(&binding.name)
+    ["lights", "light_vertices", "shapes"].contains(&binding.name)
 }
 
 fn image_info(resource: Resource) -> vk::DescriptorImageInfo {

@@ -71,12 +71,13 @@ impl ComputePass {
         module: &[u32],
         specialization: &[(u32, u32)],
     ) -> Result<Self, Error> {
-        if let Some((id, _)) = specialization.iter().find(|(id, _)| !kernel.constants.contains(id)) {
+        if let Some((id, _)) = specialization.iter().find(|(id, _)| !kernel.constants().contains(id)) {
             return Err(Error::InvalidArgument {
                 field: "specialization",
                 message: format!(
                     "kernel '{}' has no constant {id}; it has {:?}",
-                    kernel.name, kernel.constants
+                    kernel.name,
+                    kernel.constants()
                 ),
             });
         }

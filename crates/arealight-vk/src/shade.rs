@@ -17,11 +17,11 @@ use crate::resource::Resource;
 use crate::tiles::{TileMemory, TiledFrame, Tiles};
 use crate::view::{check_view, view_of};
 use arealight::gpu::ShadeConstants;
-use arealight::kernels::{CLASSIFY, FRAME_BINDINGS, Kernel, SHADE, read_samples, store_to};
+use arealight::kernels::{CLASSIFY, Kernel, SHADE, TILE_BINDINGS, read_samples, store_to};
 use arealight::plan::{self, Output, ShadeOptions, TileOptions};
-use arealight::{Effects, LightSummary};
+use arealight::{Effects, LightSummary, Plane};
 use ash::vk;
-use resources::{LIGHT_COUNTS, LOBE_HORIZONS, STENCIL, TILE_LISTS, needed};
+use resources::{LIGHT_COUNTS, LOBE_HORIZONS, TILE_LISTS, needed};
 use std::ops::Range;
 
 /// The options, tiles and modules of a shade pass.
@@ -102,9 +102,13 @@ impl ShadePass {
         check_options(options)?;
         let shade = module_of(&SHADE, options, module.as_deref())?;
         // Frames without tiles have none of their bindings
-        let used = FRAME_BINDINGS + usize::from(options.light_counts);
         let is_whole = tiles.is_some() || context.whole_modules;
-        let bindings = if is_whole { SHADE.bindings } else { &SHADE.bindings[..used] };
+        let is_used = |name| match name {
+            LIGHT_COUNTS => options.light_counts,
+            name => !TILE_BINDINGS.contains(&name),
+        };
+        let bindings = SHADE.bindings().iter().filter(|binding| is_whole || is_used(binding.name));
+        let bindings = bindings.copied().collect();
         // SAFETY: the same contract; what is no module of the kernel was refused.
         unsafe {
             let layouts = Layouts::with(context, &SHADE, bindings, (descriptors, host_set))?;
@@ -162,9 +166,8 @@ impl ShadePass {
         let mut accesses = accesses_of(&SHADE);
         let is_used = |name| match name {
             TILE_LISTS => false,
-            STENCIL => self.options.stencil,
             LIGHT_COUNTS => self.options.light_counts,
-            _ => true,
+            _ => Plane::bound_at(name) != Some(Plane::Stencil) || self.options.stencil,
         };
         accesses.retain(|access| is_used(access.name));
         if self.tiles.is_some() {
@@ -291,8 +294,7 @@ impl ShadePass {
 
     /// The resources as the pass's bindings have them; the bindings of those that are missing.
     fn in_order(&self, resources: &ShadeResources) -> Result<(Vec<Resource>, Vec<&'static str>), Error> {
-        let bindings = self.pipelines.layouts().bindings().len();
-        resources.in_order(self.options, self.tiles.is_some(), bindings)
+        resources.in_order(self.options, self.tiles.is_some(), self.pipelines.layouts().bindings())
     }
 
     /// The tiles of a frame that is classified.

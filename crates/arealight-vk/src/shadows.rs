@@ -10,10 +10,10 @@ use crate::pipelines::Pipelines;
 use crate::resource::Resource;
 use crate::shade::{Bound, ResourceAccess, ShadeResources, accesses_of};
 use crate::view::{View, check_view, view_of};
-use arealight::LightSummary;
 use arealight::gpu::ShadowConstants;
-use arealight::kernels::{SHADOW_FILTER, SHADOW_HISTORY, SHADOW_RAYS, store_to};
+use arealight::kernels::{Binding, SHADOW_FILTER, SHADOW_HISTORY, SHADOW_RAYS, store_to};
 use arealight::plan::{self, Output, ShadeOptions, ShadowFilter, ShadowHistory};
+use arealight::{LightSummary, Plane};
 use ash::vk;
 use glam::Vec3;
 use std::sync::Arc;
@@ -44,7 +44,8 @@ pub struct ShadowPassInfo {
     pub host_set: Option<vk::DescriptorSetLayout>,
 }
 
-/// The host's resources of a shadow pass beyond those of its shade pass.
+/// The host's resources of a shadow pass beyond those of its shade pass, of whose planes it reads
+/// [`Plane::Motion`], too, with [`ShadowHistory::MotionVectors`].
 #[derive(Debug, Clone, Copy)]
 pub struct ShadowResources {
     /// An image of [`ShadowPass::SHADOW_FORMAT`] and the frame's size, with the usage `STORAGE`. The pass
@@ -57,9 +58,6 @@ pub struct ShadowResources {
     /// `STORAGE_BUFFER` and `TRANSFER_DST`, which holds zeros before the first frame and after each cut. The
     /// pass alone writes it; it is the same one for all frames of a view.
     pub history: Option<Resource>,
-    /// With [`ShadowHistory::MotionVectors`], an image: for each pixel where its point was in the frame
-    /// before less where it is, in parts of the image's width and height.
-    pub motion: Option<Resource>,
     /// What blocks rays; none with [`ShadowPassInfo::module`].
     pub blockers: Option<BlockerResources>,
 }
@@ -133,7 +131,7 @@ impl ShadowPass {
         let binding = (Descriptors::Sets, host_set);
         // SAFETY: the same contract; every kernel has the bindings of the layouts.
         unsafe {
-            let layouts = Layouts::with(context, &SHADOW_RAYS, SHADOW_RAYS.bindings, binding)?;
+            let layouts = Layouts::with(context, &SHADOW_RAYS, SHADOW_RAYS.bindings().to_vec(), binding)?;
             let pipelines = |kernel, module| Pipelines::new(Arc::clone(&layouts), kernel, module);
             Ok(Self {
                 rays: pipelines(&SHADOW_RAYS, module),
@@ -191,12 +189,8 @@ impl ShadowPass {
                 "is missing, but the pass keeps a history: see ShadowOptions::history",
             ));
         }
-        if resources.motion.is_none() && self.shadows.history == ShadowHistory::MotionVectors {
-            return Err(missing(
-                "motion",
-                "is missing, but the pass has motion vectors: see ShadowOptions::history",
-            ));
-        }
+        let has_motion = self.shadows.history == ShadowHistory::MotionVectors;
+        shade.check_planes(|plane| self.options.reads(plane) || (plane == Plane::Motion && has_motion))?;
         let blockers = match (resources.blockers, self.rays.layouts().has_host_set()) {
             (Some(blockers), _) => blockers,
             (None, true) => BlockerResources { nodes: shade.lights, triangles: shade.lights },
@@ -207,30 +201,18 @@ impl ShadowPass {
                 ));
             }
         };
-        let all = [
-            shade.table,
-            shade.lights,
-            shade.light_vertices,
-            shade.position,
-            shade.normal,
-            shade.base_color,
-            shade.specular.unwrap_or(shade.base_color),
-            shade.radiance,
-            shade.shapes.unwrap_or(shade.lights),
-            shade.coat.unwrap_or(shade.base_color),
-            shade.sheen.unwrap_or(shade.base_color),
-            shade.anisotropy.unwrap_or(shade.base_color),
-            shade.film.unwrap_or(shade.base_color),
-            picks,
-            resources.shadow,
-            resources.radiance.unwrap_or(shade.radiance),
-            blockers.nodes,
-            blockers.triangles,
-            resources.history.unwrap_or(picks),
-            resources.motion.unwrap_or(shade.base_color),
-        ];
+        let layouts = self.rays.layouts();
+        let of = |binding: &Binding| match binding.name {
+            "shadow_image" => resources.shadow,
+            "radiance_image" => resources.radiance.unwrap_or(shade.radiance),
+            "nodes" => blockers.nodes,
+            "blocker_triangles" => blockers.triangles,
+            "shadow_history" => resources.history.unwrap_or(picks),
+            _ => shade.at(binding),
+        };
+        let all: Vec<_> = layouts.bindings().iter().map(of).collect();
         // SAFETY: the same contract.
-        unsafe { self.rays.layouts().write_set(set, &all) }
+        unsafe { layouts.write_set(set, &all) }
     }
 
     /// Makes the pipelines for a frame of these lights, which [`ShadowPass::record`] would otherwise do when

@@ -1,7 +1,8 @@
-//! The manifest: every kernel with its SPIR-V, bindings, constants and group size. A test reads the same
-//! facts back out of the SPIR-V, so the two cannot drift.
+//! The kernels, and what their SPIR-V says of them: bindings, constants, group size.
 
 use crate::plan::RadianceFormat;
+use reflection::Reflection;
+use std::sync::OnceLock;
 
 pub use binding::{Access, Binding, BindingKind};
 pub use images::{read_samples, store_to};
@@ -9,44 +10,82 @@ pub use images::{read_samples, store_to};
 mod binding;
 pub mod constant;
 mod images;
+mod reflection;
 
 /// A compute kernel.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug)]
 pub struct Kernel {
     /// The file's name without its ending.
     pub name: &'static str,
     /// SPIR-V 1.3 for Vulkan 1.1, entry point `main`; a multiple of four bytes.
     pub spirv: &'static [u8],
-    /// Invocations of a workgroup in x, y and z.
-    pub local_size: [u32; 3],
-    /// Size of the push constants in bytes, of the struct of [`crate::gpu`] named for the kernel.
-    pub push_constant_size: u32,
-    /// The bindings of set 0, by number.
-    pub bindings: &'static [Binding],
-    /// Specialisation constants that the kernel has.
-    pub constants: &'static [u32],
+    /// The kernels whose descriptor set it shares.
+    pass: &'static [&'static Self],
+    reflection: OnceLock<Reflection>,
+    bindings: OnceLock<Vec<Binding>>,
 }
 
+impl PartialEq for Kernel {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name && self.spirv == other.spirv
+    }
+}
+
+impl Eq for Kernel {}
+
 impl Kernel {
-    /// How many workgroups cover so many invocations.
-    pub fn groups_for(&self, invocations: [u32; 3]) -> [u32; 3] {
-        [0, 1, 2].map(|i| invocations[i].div_ceil(self.local_size[i]))
+    /// A kernel with a descriptor set of its own.
+    pub const fn new(name: &'static str, spirv: &'static [u8]) -> Self {
+        Self::of_pass(name, spirv, &[])
     }
 
-    /// A kernel of another module, that is bound and specialised as this one is.
-    #[must_use]
-    pub const fn like(&self, name: &'static str, spirv: &'static [u8]) -> Self {
-        let Self { local_size, push_constant_size, bindings, constants, .. } = *self;
-        Self { name, spirv, local_size, push_constant_size, bindings, constants }
+    /// A kernel that has a descriptor set in common with those of `pass`.
+    pub const fn of_pass(name: &'static str, spirv: &'static [u8], pass: &'static [&'static Self]) -> Self {
+        Self { name, spirv, pass, reflection: OnceLock::new(), bindings: OnceLock::new() }
+    }
+
+    fn reflection(&self) -> &Reflection {
+        self.reflection.get_or_init(|| Reflection::of(self.spirv))
+    }
+
+    /// Invocations of a workgroup in x, y and z.
+    pub fn local_size(&self) -> [u32; 3] {
+        self.reflection().local_size
+    }
+
+    /// Size of the push constants in bytes, of the struct of [`crate::gpu`] named for the kernel.
+    pub fn push_constant_size(&self) -> u32 {
+        self.reflection().push_constant_size
+    }
+
+    /// Ids of the specialisation constants that the kernel has.
+    pub fn constants(&self) -> &[u32] {
+        &self.reflection().constants
+    }
+
+    /// The bindings of set 0, by number: the kernel's, and those of the other kernels of its pass with
+    /// [`Access::None`].
+    pub fn bindings(&self) -> &[Binding] {
+        self.bindings.get_or_init(|| {
+            let mut all = self.reflection().bindings.clone();
+            for other in self.pass.iter().flat_map(|kernel| &kernel.reflection().bindings) {
+                if let Err(place) = all.binary_search_by_key(&other.number, |one| one.number) {
+                    all.insert(place, Binding { access: Access::None, ..*other });
+                }
+            }
+            all
+        })
+    }
+
+    /// How many workgroups cover so many invocations.
+    pub fn groups_for(&self, invocations: [u32; 3]) -> [u32; 3] {
+        let local_size = self.local_size();
+        [0, 1, 2].map(|i| invocations[i].div_ceil(local_size[i]))
     }
 
     /// The SPIR-V as words, in the machine's byte order.
     pub fn words(&self) -> Vec<u32> {
-        self.each_word().collect()
-    }
-
-    fn each_word(&self) -> impl Iterator<Item = u32> {
-        self.spirv.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+        self.spirv.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
     }
 
     /// As [`Kernel::words`], with images of this format where the module stores to rgba32f, and a G-buffer of
@@ -59,454 +98,49 @@ impl Kernel {
     }
 }
 
-const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
-    Binding { name, kind, access: Access::Read, content }
-}
+/// The kernels of a shade pass, which have one descriptor set.
+pub static SHADE_PASS: [&Kernel; 2] = [&SHADE, &CLASSIFY];
 
-const fn write(name: &'static str, kind: BindingKind, access: Access, content: &'static str) -> Binding {
-    Binding { name, kind, access, content }
-}
-
-/// The light table, of every kernel that looks lobes up.
-pub const TABLE: Binding = read(
-    "table_image",
-    BindingKind::SampledImage,
-    "LightTable::texels: 2D array, layer 0 matrix, layer 1 magnitudes, layer 2 Schlick's matrix, layers 3 to \
-    5 pairs; rgba16f or \
-     rgba32f",
-);
-/// Polygon lights.
-pub const LIGHTS: Binding = read("lights", BindingKind::StorageBuffer, "GpuLight[]");
-/// Polygon lights' vertices.
-pub const LIGHT_VERTICES: Binding =
-    read("light_vertices", BindingKind::StorageBuffer, "vec4[]: position relative to the light's center, 0");
-/// Positions of a G-buffer.
-pub const G_POSITION: Binding = read(
-    "g_position",
-    BindingKind::SampledImage,
-    "position relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f)",
-);
-/// Normals and roughness of a G-buffer.
-pub const G_NORMAL: Binding = read(
-    "g_normal",
-    BindingKind::SampledImage,
-    "shading normal in xyz, of any length; perceptual roughness in w (rgba16f; rgba32f for mirrors); the \
-    shade kernel: by \
-     GBufferLayout",
-);
-/// Base colour and metalness of a G-buffer.
-pub const G_BASE_COLOR: Binding = read(
-    "g_base_color",
-    BindingKind::SampledImage,
-    "linear base colour in rgb, metalness in a (rgba8 unorm; sRGB formats decode by themselves); the shade \
-    kernel: by \
-     GBufferLayout",
-);
-/// Dielectric reflectance of a G-buffer.
-pub const G_SPECULAR: Binding = read(
-    "g_specular",
-    BindingKind::SampledImage,
-    "dielectric F0 in rgb, dielectric F90 in a (rgba8 unorm); read only with Effects::SPECULAR_INPUT, \
-     else bind any image; the shade kernel: by GBufferLayout",
-);
-
-/// A G-buffer's coats.
-pub const G_COAT: Binding = read(
-    "g_coat",
-    BindingKind::SampledImage,
-    "weight of the coat in r, its perceptual roughness in g; with Effects::COAT_NORMAL its normal's place on \
-    the octahedron, \
-     in [-1, 1], in ba (rgba16f; rg8 unorm without normals); read only with Effects::COAT, else bind any \
-     image",
-);
-
-/// A G-buffer's sheen.
-pub const G_SHEEN: Binding = read(
-    "g_sheen",
-    BindingKind::SampledImage,
-    "linear colour of the sheen in rgb, its perceptual roughness in a (rgba8 unorm; sRGB formats decode by \
-    themselves); read only \
-     with Effects::SHEEN, else bind any image",
-);
-
-/// A G-buffer's second roughnesses.
-pub const G_ANISOTROPY: Binding = read(
-    "g_anisotropy",
-    BindingKind::SampledImage,
-    "tangent's place on the octahedron, in [-1, 1], in rg, perceptual roughness along it in b \
-    (Effects::ANISOTROPY; 0: \
-     isotropic), roughness of the diffuse lobe in a (Effects::DIFFUSE_ROUGHNESS) (rgba16f); read only with \
-     one of these, else bind any image",
-);
-
-/// A G-buffer's thin films.
-pub const G_FILM: Binding = read(
-    "g_film",
-    BindingKind::SampledImage,
-    "how much of a surface a thin film covers in r, its index of refraction in g, its thickness in \
-    nanometres in b (rgba16f); read only with \
-     Effects::THIN_FILM, else bind any image",
-);
-
-/// Lights' textures.
-pub const LIGHT_TEXTURES: Binding = read(
-    "light_textures",
-    BindingKind::FilteredImage,
-    "2D array of the lights' textures, a layer each, with the levels of PyramidSize (rgba16f); read only \
-    with \
-     Effects::IMAGES, else bind any 2D array image",
-);
-
-/// Disks, spheres and tubes.
-pub const SHAPES: Binding = read(
-    "shapes",
-    BindingKind::StorageBuffer,
-    "GpuShape[]; the shade kernel reads it only with Effects::SHAPES, else bind any buffer",
-);
-
-const RADIANCE: Binding = write(
-    "radiance_image",
-    BindingKind::StorageImage,
-    Access::ReadWrite,
-    "outgoing radiance in rgb, of the diffuse lobe alone with ShadeOptions::separate_lobes; 1 in a where \
-    there is a \
-     surface (rgba32f, or by RadianceFormat)",
-);
-const GLOSSY: Binding = write(
-    "glossy_image",
-    BindingKind::StorageImage,
-    Access::ReadWrite,
-    "the glossy lobe's, likewise; used only with ShadeOptions::separate_lobes, else bind radiance_image's \
-    again",
-);
-
-const PICKS: Binding = write(
-    "shadow_picks",
-    BindingKind::StorageBuffer,
-    Access::Write,
-    "u32[]: of each pixel ShadeOptions::shadow_rays words, a light and a lobe for each ray; written only \
-    with shadow rays, else bind any \
-     buffer",
-);
-
-const STENCIL: Binding = read(
-    "g_stencil",
-    BindingKind::SampledImage,
-    "stencil in r, of which eight bits are compared (s8_uint, r8_uint); read only with \
-    ShadeOptions::stencil, else bind any image",
-);
-const LIGHT_COUNTS: Binding = read(
-    "light_counts",
-    BindingKind::StorageBuffer,
-    "LightCounts; read only with ShadeOptions::light_counts, else bind any buffer",
-);
-const LOBE_HORIZONS: Binding =
-    read("lobe_horizons", BindingKind::StorageBuffer, "LightTable::lobe_horizons: twelve floats per cell");
-const TILE_LISTS: Binding = write(
-    "tile_lists",
-    BindingKind::StorageBuffer,
-    Access::ReadWrite,
-    "tiles::memory bytes; begins with tiles::NO_TILES per class",
-);
+/// The kernels of a shadow pass, which have one descriptor set and [`crate::gpu::ShadowConstants`].
+pub static SHADOW_PASS: [&Kernel; 3] = [&SHADOW_RAYS, &SHADOW_HISTORY, &SHADOW_FILTER];
 
 /// Shades a G-buffer with polygon lights and shapes: whole frames, or the tiles of one class, by
 /// [`constant::CLASS`]. Push constants: [`crate::gpu::ShadeConstants`].
 ///
-/// Whole frames use the first [`FRAME_BINDINGS`] bindings alone, and the next with
-/// [`ShadeOptions::light_counts`](crate::plan::ShadeOptions::light_counts). A module that was pruned for them
-/// has no other, so that its pipeline layout needs no more; the module as it is has `tile_lists`, too.
-pub static SHADE: Kernel = Kernel {
-    name: "shade",
-    spirv: include_bytes!("../spirv/shade.spv"),
-    local_size: [8, 8, 1],
-    push_constant_size: size_of::<crate::gpu::ShadeConstants>() as u32,
-    bindings: &[
-        TABLE,
-        LIGHTS,
-        LIGHT_VERTICES,
-        G_POSITION,
-        G_NORMAL,
-        G_BASE_COLOR,
-        G_SPECULAR,
-        RADIANCE,
-        LIGHT_TEXTURES,
-        SHAPES,
-        GLOSSY,
-        G_COAT,
-        G_SHEEN,
-        G_ANISOTROPY,
-        G_FILM,
-        PICKS,
-        STENCIL,
-        LIGHT_COUNTS,
-        Binding { access: Access::Read, ..TILE_LISTS },
-        LOBE_HORIZONS.unused(),
-    ],
-    constants: &[
-        constant::EFFECTS,
-        constant::FORM_FACTOR,
-        constant::POSITION_SOURCE,
-        constant::OUTPUT,
-        constant::HORIZON,
-        constant::SPECULAR_LOBES,
-        constant::LOBES,
-        constant::FOOTPRINT,
-        constant::HAS_QUADS,
-        constant::CLASS,
-        constant::LAYOUT,
-        constant::SHADOW_RAYS,
-        constant::VIEW,
-        constant::LIGHT_COUNTS,
-        constant::SAMPLES,
-    ],
-};
+/// A module that was pruned for whole frames has none of [`TILE_BINDINGS`], and `light_counts` only with
+/// [`ShadeOptions::light_counts`](crate::plan::ShadeOptions::light_counts): its pipeline layout needs no
+/// more. The module as it is has `tile_lists`, too.
+pub static SHADE: Kernel = Kernel::of_pass("shade", include_bytes!("../spirv/shade.spv"), &SHADE_PASS);
 
-/// How many of the first bindings of [`SHADE`] whole frames use.
-pub const FRAME_BINDINGS: usize = 17;
+/// The names of the bindings that tiles alone have.
+pub const TILE_BINDINGS: [&str; 2] = ["tile_lists", "lobe_horizons"];
 
-/// Sorts the tiles of a G-buffer into classes; a workgroup per tile. Its descriptor set is that of [`SHADE`].
-/// Push constants: [`crate::gpu::ShadeConstants`].
-pub static CLASSIFY: Kernel = Kernel {
-    name: "classify",
-    spirv: include_bytes!("../spirv/classify.spv"),
-    local_size: [8, 8, 1],
-    push_constant_size: size_of::<crate::gpu::ShadeConstants>() as u32,
-    bindings: &[
-        TABLE.unused(),
-        LIGHTS,
-        LIGHT_VERTICES.unused(),
-        G_POSITION,
-        G_NORMAL,
-        G_BASE_COLOR,
-        G_SPECULAR,
-        RADIANCE.unused(),
-        LIGHT_TEXTURES.unused(),
-        SHAPES,
-        GLOSSY.unused(),
-        G_COAT,
-        G_SHEEN,
-        G_ANISOTROPY,
-        G_FILM,
-        PICKS.unused(),
-        STENCIL,
-        LIGHT_COUNTS,
-        TILE_LISTS,
-        LOBE_HORIZONS,
-    ],
-    constants: &[
-        constant::EFFECTS,
-        constant::POSITION_SOURCE,
-        constant::HORIZON,
-        constant::SPECULAR_LOBES,
-        constant::LOBES,
-        constant::LAYOUT,
-        constant::CULL,
-        constant::VIEW,
-        constant::LIGHT_COUNTS,
-        constant::SAMPLES,
-    ],
-};
+/// Sorts the tiles of a G-buffer into classes; a workgroup per tile. Push constants:
+/// [`crate::gpu::ShadeConstants`].
+pub static CLASSIFY: Kernel =
+    Kernel::of_pass("classify", include_bytes!("../spirv/classify.spv"), &SHADE_PASS);
 
-const UNSHADOWED: Binding = read(
-    "unshadowed_image",
-    BindingKind::StorageImage,
-    "what the shade kernel stored at radiance_image (rgba32f, or by RadianceFormat)",
-);
-const SHADOW: Binding = write(
-    "shadow_image",
-    BindingKind::StorageImage,
-    Access::ReadWrite,
-    "of the light of a pixel: the part that arrives, the penumbra's width, 1 where there is light, how many \
-    rays (rgba16f)",
-);
-const SHADOWED: Binding = write(
-    "radiance_image",
-    BindingKind::StorageImage,
-    Access::ReadWrite,
-    "outgoing radiance in rgb; 1 in a where there is a surface (rgba32f, or by RadianceFormat); may be \
-    unshadowed_image's",
-);
-/// What blocks rays: nodes.
-pub const BLOCKER_NODES: Binding = read("nodes", BindingKind::StorageBuffer, "Blockers::nodes: GpuBvhNode[]");
-/// And triangles.
-pub const BLOCKER_TRIANGLES: Binding =
-    read("blocker_triangles", BindingKind::StorageBuffer, "Blockers::triangles: vec4[3][]");
+/// Traces the shadow rays that [`SHADE`] picked lights and lobes for.
+pub static SHADOW_RAYS: Kernel =
+    Kernel::of_pass("shadow_rays", include_bytes!("../spirv/shadow_rays.spv"), &SHADOW_PASS);
 
-const SHADOW_KEPT: Binding = write(
-    "shadow_history",
-    BindingKind::StorageBuffer,
-    Access::ReadWrite,
-    "plan::shadow_history_size bytes, zeros before the first frame; used only with ShadowOptions::history, \
-    else bind any buffer",
-);
-const MOTION: Binding = read(
-    "g_motion",
-    BindingKind::SampledImage,
-    "where a pixel's point was in the frame before less where it is, in parts of the image's size (rg16f); \
-    read only with \
-     ShadowHistory::MotionVectors, else bind any image",
-);
+/// Makes means over frames of the rays of [`SHADOW_RAYS`].
+pub static SHADOW_HISTORY: Kernel =
+    Kernel::of_pass("shadow_history", include_bytes!("../spirv/shadow_history.spv"), &SHADOW_PASS);
 
-/// Traces the shadow rays that [`SHADE`] picked lights and lobes for. Push constants:
-/// [`crate::gpu::ShadowConstants`].
-pub static SHADOW_RAYS: Kernel = Kernel {
-    name: "shadow_rays",
-    spirv: include_bytes!("../spirv/shadow_rays.spv"),
-    local_size: [8, 8, 1],
-    push_constant_size: size_of::<crate::gpu::ShadowConstants>() as u32,
-    bindings: &[
-        TABLE,
-        LIGHTS,
-        LIGHT_VERTICES,
-        G_POSITION,
-        G_NORMAL,
-        G_BASE_COLOR,
-        G_SPECULAR,
-        UNSHADOWED.unused(),
-        SHAPES,
-        G_COAT,
-        G_SHEEN,
-        G_ANISOTROPY,
-        G_FILM,
-        Binding { access: Access::Read, ..PICKS },
-        SHADOW,
-        SHADOWED.unused(),
-        BLOCKER_NODES,
-        BLOCKER_TRIANGLES,
-        SHADOW_KEPT.unused(),
-        MOTION.unused(),
-    ],
-    constants: &[
-        constant::EFFECTS,
-        constant::POSITION_SOURCE,
-        constant::HORIZON,
-        constant::SPECULAR_LOBES,
-        constant::LOBES,
-        constant::LAYOUT,
-        constant::SHADOW_RAYS,
-        constant::VIEW,
-    ],
-};
-
-/// Makes means over frames of the rays of [`SHADOW_RAYS`]. Its descriptor set is that kernel's. Push
-/// constants: [`crate::gpu::ShadowConstants`].
-pub static SHADOW_HISTORY: Kernel = Kernel {
-    name: "shadow_history",
-    spirv: include_bytes!("../spirv/shadow_history.spv"),
-    local_size: [8, 8, 1],
-    push_constant_size: size_of::<crate::gpu::ShadowConstants>() as u32,
-    bindings: &[
-        TABLE.unused(),
-        LIGHTS.unused(),
-        LIGHT_VERTICES.unused(),
-        G_POSITION,
-        G_NORMAL,
-        G_BASE_COLOR,
-        G_SPECULAR,
-        UNSHADOWED.unused(),
-        SHAPES.unused(),
-        G_COAT,
-        G_SHEEN,
-        G_ANISOTROPY,
-        G_FILM,
-        PICKS.unused(),
-        SHADOW,
-        SHADOWED.unused(),
-        BLOCKER_NODES.unused(),
-        BLOCKER_TRIANGLES.unused(),
-        SHADOW_KEPT,
-        MOTION,
-    ],
-    constants: &[
-        constant::EFFECTS,
-        constant::POSITION_SOURCE,
-        constant::HORIZON,
-        constant::SPECULAR_LOBES,
-        constant::LOBES,
-        constant::LAYOUT,
-        constant::SHADOW_RAYS,
-        constant::SHADOW_MOTION,
-        constant::VIEW,
-    ],
-};
-
-/// Multiplies unshadowed radiance with what the rays of [`SHADOW_RAYS`] say of it. Its descriptor set is that
-/// kernel's. Push constants: [`crate::gpu::ShadowConstants`].
-pub static SHADOW_FILTER: Kernel = Kernel {
-    name: "shadow_filter",
-    spirv: include_bytes!("../spirv/shadow_filter.spv"),
-    local_size: [8, 8, 1],
-    push_constant_size: size_of::<crate::gpu::ShadowConstants>() as u32,
-    bindings: &[
-        TABLE.unused(),
-        LIGHTS.unused(),
-        LIGHT_VERTICES.unused(),
-        G_POSITION,
-        G_NORMAL,
-        G_BASE_COLOR,
-        G_SPECULAR,
-        UNSHADOWED,
-        SHAPES.unused(),
-        G_COAT,
-        G_SHEEN,
-        G_ANISOTROPY,
-        G_FILM,
-        PICKS.unused(),
-        SHADOW,
-        SHADOWED,
-        BLOCKER_NODES.unused(),
-        BLOCKER_TRIANGLES.unused(),
-        SHADOW_KEPT,
-        MOTION.unused(),
-    ],
-    constants: &[
-        constant::EFFECTS,
-        constant::POSITION_SOURCE,
-        constant::OUTPUT,
-        constant::HORIZON,
-        constant::SPECULAR_LOBES,
-        constant::LOBES,
-        constant::LAYOUT,
-        constant::SHADOW_RAYS,
-        constant::SHADOW_FILTER,
-        constant::SHADOW_HISTORY,
-        constant::VIEW,
-    ],
-};
+/// Multiplies unshadowed radiance with what the rays of [`SHADOW_RAYS`] say of it.
+pub static SHADOW_FILTER: Kernel =
+    Kernel::of_pass("shadow_filter", include_bytes!("../spirv/shadow_filter.spv"), &SHADOW_PASS);
 
 /// Loads a part of an image into level 0 of a layer of the light textures; an invocation per texel of the
 /// level. Push constants: [`crate::gpu::TextureLoadConstants`].
-pub static TEXTURE_LOAD: Kernel = Kernel {
-    name: "texture_load",
-    spirv: include_bytes!("../spirv/texture_load.spv"),
-    local_size: [32, 2, 1],
-    push_constant_size: size_of::<crate::gpu::TextureLoadConstants>() as u32,
-    bindings: &[
-        read(
-            "source",
-            BindingKind::SampledImage,
-            "the image: linear light or sRGB, in any format that is sampled as numbers (not integers)",
-        ),
-        write("out_level", BindingKind::StorageImage, Access::Write, "level 0, every layer (rgba16f)"),
-    ],
-    constants: &[constant::LOAD_STEPS],
-};
+pub static TEXTURE_LOAD: Kernel = Kernel::new("texture_load", include_bytes!("../spirv/texture_load.spv"));
 
 /// Makes a level of the light textures from the one before; an invocation per block of
 /// [`crate::plan::BLUR_BLOCK`] texels of the level and layer. Push constants:
 /// [`crate::pyramid::PyramidSize::weights`] of the level, six
 /// floats, and the first layer.
-pub static TEXTURE_BLUR: Kernel = Kernel {
-    name: "texture_blur",
-    spirv: include_bytes!("../spirv/texture_blur.spv"),
-    local_size: [32, 2, 1],
-    push_constant_size: 4 * (crate::pyramid::MOST_TAPS as u32 + 1),
-    bindings: &[
-        read("finer_level", BindingKind::SampledImage, "the level before, every layer (rgba16f)"),
-        write("out_level", BindingKind::StorageImage, Access::Write, "the level, every layer (rgba16f)"),
-    ],
-    constants: &[constant::RADIUS],
-};
+pub static TEXTURE_BLUR: Kernel = Kernel::new("texture_blur", include_bytes!("../spirv/texture_blur.spv"));
 
 /// Every kernel.
 pub static ALL: [&Kernel; 7] =

@@ -61,6 +61,7 @@
 //! | [`table`] | the fitted table, with a float64 twin of the shader's lookup |
 //! | [`gpu`] | data laid out as the GPU reads it |
 //! | [`kernels`] | the embedded SPIR-V with bindings, constants and group sizes |
+//! | [`planes`] | what a pass reads of each pixel |
 //! | [`tiles`] | tiles of a picture, sorted by the lights that matter to them |
 //! | [`plan`] | which kernel runs, specialised how, over how many groups |
 
@@ -77,6 +78,7 @@ pub mod light_texture;
 pub mod mesh;
 pub mod packed_lights;
 pub mod plan;
+pub mod planes;
 pub mod pyramid;
 pub mod quality;
 pub mod reach;
@@ -99,6 +101,8 @@ pub use light_shape::{LightShape, TubeEnds};
 pub use light_texture::{LightTexture, TextureMap};
 #[doc(inline)]
 pub use packed_lights::{LightSummary, PackedLights};
+#[doc(inline)]
+pub use planes::{Plane, Planes};
 #[doc(inline)]
 pub use pyramid::PyramidSize;
 #[doc(inline)]

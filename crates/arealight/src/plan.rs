@@ -2,15 +2,15 @@
 //! recorder of this project or for one of your own.
 
 use crate::kernels;
+use crate::planes::Plane;
 use crate::pyramid::{MOST_TAPS, PyramidSize};
 use crate::tiles::{self, TileClass};
 use crate::{Effects, LightSummary, Quality};
 
 /// What the images at the bindings `g_normal`, `g_base_color` and `g_specular` hold of a surface. Base
-/// colours are linear when they are read: in images of sRGB formats they are stored as sRGB. Coats are at
-/// `g_coat`, sheen at `g_sheen`, second roughnesses at `g_anisotropy` and thin films at `g_film`, alike in
-/// every layout. A G-buffer of any other layout is read by a bridge function in GLSL of the host's
-/// (docs/embed-glsl.md).
+/// colours are linear when they are read: in images of sRGB formats they are stored as sRGB. The other planes
+/// are alike in every layout. A G-buffer of any other layout is read by a bridge function in GLSL of the
+/// host's (docs/embed-glsl.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum GBufferLayout {
@@ -137,29 +137,14 @@ impl ShadeOptions {
         (self.surfaces & Effects::SURFACES) | (lights.effects - Effects::SURFACES)
     }
 
-    /// Whether the image at the binding `g_specular` is read.
-    pub fn reads_specular(self) -> bool {
-        self.g_buffer != GBufferLayout::Arealight || self.surfaces.contains(Effects::SPECULAR_INPUT)
-    }
-
-    /// Whether the image at the binding `g_coat` is read.
-    pub fn reads_coat(self) -> bool {
-        self.surfaces.contains(Effects::COAT)
-    }
-
-    /// Whether the image at the binding `g_sheen` is read.
-    pub fn reads_sheen(self) -> bool {
-        self.surfaces.contains(Effects::SHEEN)
-    }
-
-    /// Whether the image at the binding `g_anisotropy` is read.
-    pub fn reads_anisotropy(self) -> bool {
-        self.surfaces.intersects(Effects::ANISOTROPY | Effects::DIFFUSE_ROUGHNESS)
-    }
-
-    /// Whether the image at the binding `g_film` is read.
-    pub fn reads_film(self) -> bool {
-        self.surfaces.contains(Effects::THIN_FILM)
+    /// Whether a plane is read. [`Plane::Motion`] is by shadows alone, whose options are not these.
+    pub fn reads(self, plane: Plane) -> bool {
+        match plane {
+            Plane::Position | Plane::Normal | Plane::BaseColor => true,
+            Plane::Specular if self.g_buffer != GBufferLayout::Arealight => true,
+            Plane::Stencil => self.stencil,
+            _ => self.surfaces.intersects(plane.effects()),
+        }
     }
 
     /// [`ShadeOptions::output`], [`ShadeOptions::separate_lobes`] and [`ShadeOptions::format`] as the bits
@@ -392,7 +377,7 @@ mod tests {
         assert_eq!(options.effects(lights(Effects::SPECULAR_INPUT)), lobes);
         let all = ShadeOptions { surfaces: Effects::all(), ..options };
         assert_eq!(all.effects(lights(Effects::empty())), Effects::SURFACES);
-        assert!(all.reads_specular() && !options.reads_specular());
+        assert!(all.reads(Plane::Specular) && !options.reads(Plane::Specular));
         let has_quads = |lights| {
             let values = shade_specialization(options, lights);
             values.iter().find(|(id, _)| *id == kernels::constant::HAS_QUADS).map(|(_, value)| *value)

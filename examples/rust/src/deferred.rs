@@ -6,7 +6,7 @@ use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Memory, 
 use crate::picture::{Picture, Readback};
 use crate::{Result, scene};
 use arealight::plan::{Output, ShadeOptions, TileOptions};
-use arealight::{PackedLights, SpecularLobes};
+use arealight::{PackedLights, Plane, SpecularLobes};
 use arealight_vk::{
     Context, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources, TableFormat, TableImage,
 };
@@ -54,7 +54,7 @@ impl<'a> Deferred<'a> {
         // Make the pass for the way in which your surfaces are stored; it takes every kind of
         // light. It adds to the emission that was drawn
         let options = ShadeOptions { from_depth: true, output: Output::Add, ..ShadeOptions::default() };
-        GBuffer::FORMATS.check(options)?; // says which image has another format than it should
+        GBuffer::formats().check(options)?; // says which image has another format than it should
         let table = arealight::LightTable::ggx();
         // With tiles, for scenes of many lights. (TileOptions::default() classifies no frame of two.)
         let tiles = TileOptions { least_quads: 0, ..TileOptions::default() };
@@ -124,9 +124,12 @@ impl<'a> Deferred<'a> {
                 table: self.table.0.resource(),
                 lights: Resource::buffer(place.lights.raw),
                 light_vertices: Resource::buffer(place.light_vertices.raw),
-                position: Resource::depth(self.g_buffer.depth.view),
-                normal: Resource::sampled(self.g_buffer.normal_roughness.view),
-                base_color: Resource::sampled(self.g_buffer.base_color_metalness.view),
+                planes: [
+                    (Plane::Position, Resource::depth(self.g_buffer.depth.view)),
+                    (Plane::Normal, Resource::sampled(self.g_buffer.normal_roughness.view)),
+                    (Plane::BaseColor, Resource::sampled(self.g_buffer.base_color_metalness.view)),
+                ]
+                .into(),
                 radiance: Resource::stored(self.g_buffer.radiance.view),
                 lobe_horizons: Some(Resource::buffer(self.lobe_horizons.raw)), // with tiles, as the next
                 tile_lists: Some(Resource::buffer(lists.raw)),

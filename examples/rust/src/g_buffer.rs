@@ -3,6 +3,7 @@
 use crate::Result;
 use crate::draw::{Draw, DrawOptions, Users};
 use crate::gpu::{Gpu, Image};
+use arealight::Plane;
 use arealight_vk::ShadeFormats;
 use ash::vk;
 
@@ -26,18 +27,18 @@ pub struct GBuffer<'a> {
 
 impl<'a> GBuffer<'a> {
     // doc: formats
-    /// The images' formats.
-    pub const FORMATS: ShadeFormats = ShadeFormats {
-        position: vk::Format::D32_SFLOAT,
-        normal: vk::Format::R16G16B16A16_SFLOAT,
-        base_color: vk::Format::R8G8B8A8_UNORM,
-        radiance: vk::Format::R32G32B32A32_SFLOAT,
-        specular: vk::Format::UNDEFINED, // there is none
-        sheen: vk::Format::UNDEFINED,
-        anisotropy: vk::Format::UNDEFINED,
-        film: vk::Format::UNDEFINED,
-        coat: vk::Format::UNDEFINED,
-    };
+    /// The images' formats; what the pass does not read needs none.
+    pub fn formats() -> ShadeFormats {
+        ShadeFormats {
+            planes: [
+                (Plane::Position, vk::Format::D32_SFLOAT),
+                (Plane::Normal, vk::Format::R16G16B16A16_SFLOAT),
+                (Plane::BaseColor, vk::Format::R8G8B8A8_UNORM),
+            ]
+            .into(),
+            radiance: vk::Format::R32G32B32A32_SFLOAT,
+        }
+    }
     // doc end
 
     /// Makes the images and the drawing; between one and the next the images are used in these stages, with
@@ -51,13 +52,13 @@ impl<'a> GBuffer<'a> {
         users: (vk::PipelineStageFlags, vk::AccessFlags),
     ) -> Result<Self> {
         // doc: g_buffer
-        let formats = Self::FORMATS;
+        let formats = Self::formats();
         let (color, sampled) = (vk::ImageUsageFlags::COLOR_ATTACHMENT, vk::ImageUsageFlags::SAMPLED);
         let depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | sampled;
         let radiance = color | vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::TRANSFER_SRC;
-        let depth = gpu.image(formats.position, size, depth)?;
-        let normal_roughness = gpu.image(formats.normal, size, color | sampled)?;
-        let base_color_metalness = gpu.image(formats.base_color, size, color | sampled)?;
+        let depth = gpu.image(formats.planes[Plane::Position], size, depth)?;
+        let normal_roughness = gpu.image(formats.planes[Plane::Normal], size, color | sampled)?;
+        let base_color_metalness = gpu.image(formats.planes[Plane::BaseColor], size, color | sampled)?;
         let radiance = gpu.image(formats.radiance, size, radiance)?;
         // doc end
         let read_only = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;

@@ -3,7 +3,7 @@
 use crate::g_buffer::{GBuffer, clip_from_view, view};
 use crate::{Gpu, Result};
 use arealight::plan::{Output, ShadeOptions};
-use arealight::{Light, PackedLights};
+use arealight::{Light, PackedLights, Plane};
 use arealight_examples::scene;
 use arealight_vk::{
     Context, Resource, ShadeFrame, ShadePass, ShadeResources, TableFormat, TableImage, Viewport,
@@ -71,9 +71,12 @@ impl Shading {
             table: table.resource(),
             lights: Resource::buffer(raw_buffer(&lights)?),
             light_vertices: Resource::buffer(raw_buffer(&light_vertices)?),
-            position: Resource::depth(depth?),
-            normal: Resource::sampled(normal?),
-            base_color: Resource::sampled(base_color?),
+            planes: [
+                (Plane::Position, Resource::depth(depth?)),
+                (Plane::Normal, Resource::sampled(normal?)),
+                (Plane::BaseColor, Resource::sampled(base_color?)),
+            ]
+            .into(),
             radiance: Resource::stored(radiance?),
             ..ShadeResources::default()
         };

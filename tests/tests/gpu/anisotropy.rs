@@ -2,11 +2,11 @@
 //! and where it is hard.
 
 use arealight::plan::GBufferLayout;
-use arealight::{Effects, Lobes, Quality};
+use arealight::{Effects, Lobes, Plane, Quality};
 use arealight_engine::EvalPoint;
 use arealight_oracle::material::{Anisotropy, Surface};
 use arealight_tests::materials::{lobe_qualities, under_polygon};
-use arealight_tests::one_pixel::{LAYOUTS, OnePixel, material, sampled, under_lamp};
+use arealight_tests::one_pixel::{LAYOUTS, OnePixel, material, under_lamp};
 use arealight_tests::{Random, TestEngine, point, rounding};
 use arealight_vk::ash::vk::Format;
 use glam::{DVec3, Vec4};
@@ -171,7 +171,7 @@ fn every_layout_has_second_roughnesses_in_an_image_of_their_own() {
     let both = Effects::ANISOTROPY | Effects::DIFFUSE_ROUGHNESS;
     let shade = |layout, effects, anisotropy: [f32; 4]| {
         let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);
-        pixel.anisotropy = sampled(&engine, Format::R32G32B32A32_SFLOAT, anisotropy);
+        pixel.set(Plane::Anisotropy, Format::R32G32B32A32_SFLOAT, anisotropy);
         pixel.shade_under_lamp(layout, effects)
     };
     for layout in LAYOUTS {

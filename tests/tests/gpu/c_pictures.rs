@@ -2,7 +2,7 @@
 //! several faces, and a G-buffer of the host's own, with a table whose first upload was never run.
 
 use arealight::plan::ShadeOptions;
-use arealight::{Effects, Light, LightFault, LightShape, LightTexture, TexturePart, Wrap};
+use arealight::{Effects, Light, LightFault, LightShape, LightTexture, Plane, TexturePart, Wrap};
 use arealight_capi::{
     AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, AREALIGHT_DESCRIPTORS_PUSHED, AREALIGHT_EFFECT_COAT,
     AREALIGHT_EFFECT_COAT_NORMAL, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_LIGHT_MESH, AREALIGHT_WRAP_MIRROR,
@@ -17,7 +17,7 @@ use arealight_engine::host::{DescriptorPool, HostError, Image, ImageDescription,
 use arealight_engine::{SourceImage, SourceTexels};
 use arealight_tests::TestEngine;
 use arealight_tests::c_library::{CLibrary, DeviceMemory, NO_FRAME, NO_LIGHT, good, refused, set_layout};
-use arealight_tests::one_pixel::{OnePixel, lamp, sampled};
+use arealight_tests::one_pixel::{OnePixel, lamp};
 use ash::vk::{self, Handle as _};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use std::ffi::c_void;
@@ -311,7 +311,7 @@ fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
 
     // With a coat, whose image is one more
     let mut coated = OnePixel::new(&engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5);
-    coated.coat = sampled(&engine, vk::Format::R32G32B32A32_SFLOAT, [0.75_f32, 0.3, 0.2, -0.1]);
+    coated.set(Plane::Coat, vk::Format::R32G32B32A32_SFLOAT, [0.75_f32, 0.3, 0.2, -0.1]);
     let options =
         ShadeOptions { surfaces: Effects::DIFFUSE | Effects::COAT | Effects::COAT_NORMAL, ..options };
     let rust = coated.shade(options, &lights(HOLES).unwrap(), CAMERA, None);

@@ -1,5 +1,6 @@
 //! Shadows of a host in C are the recorder's, to the last bit.
 
+use arealight::Plane;
 use arealight::plan::{ShadeOptions, ShadowFilter};
 use arealight_capi::{
     AREALIGHT_SHADOW_FILTER_GATHER, AREALIGHT_WHOLE_SIZE, ArealightBlockerArrays, ArealightBuffer,
@@ -135,9 +136,10 @@ impl<'a> CPasses<'a> {
         let resources = ArealightResources {
             lights: whole(&lights),
             light_vertices: whole(&vertices),
-            position: image(&inputs[0], Usage::COMPUTE_READ),
-            normal: image(&inputs[1], Usage::COMPUTE_READ),
-            base_color: image(&inputs[2], Usage::COMPUTE_READ),
+            planes: Plane::ALL.map(|plane| {
+                let image_of = |input| image(input, Usage::COMPUTE_READ);
+                inputs.get(plane as usize).map_or_else(ArealightImage::default, image_of)
+            }),
             radiance: image(&radiance, Usage::COMPUTE_WRITE),
             shadow_picks: whole(&picks),
             ..ArealightResources::default()

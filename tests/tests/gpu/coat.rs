@@ -1,12 +1,12 @@
 //! Clear coats on the GPU: against the float64 twin, against no coat, and where they are hard.
 
 use arealight::plan::GBufferLayout;
-use arealight::{Effects, MIN_ALPHA, Quality, SpecularLobes};
+use arealight::{Effects, MIN_ALPHA, Plane, Quality, SpecularLobes};
 use arealight_engine::EvalPoint;
 use arealight_oracle::frame::SurfaceFrame;
 use arealight_oracle::material::{Coat, Material, Surface};
 use arealight_tests::materials::{lobe_qualities, shape_lights, under_polygon};
-use arealight_tests::one_pixel::{LAYOUTS, OnePixel, material, sampled, under_lamp};
+use arealight_tests::one_pixel::{LAYOUTS, OnePixel, material, under_lamp};
 use arealight_tests::{Random, TestEngine, lambert_surface, rounding};
 use arealight_vk::ash::vk::Format;
 use glam::{DVec3, Vec3, Vec4};
@@ -172,7 +172,7 @@ fn every_layout_has_its_coats_in_an_image_of_their_own() {
     let Some(engine) = TestEngine::new() else { return };
     let shade = |layout, effects, coat: [f32; 4]| {
         let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);
-        pixel.coat = sampled(&engine, Format::R32G32B32A32_SFLOAT, coat);
+        pixel.set(Plane::Coat, Format::R32G32B32A32_SFLOAT, coat);
         pixel.shade_under_lamp(layout, effects)
     };
     let coats = Effects::COAT | Effects::COAT_NORMAL;

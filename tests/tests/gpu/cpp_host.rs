@@ -2,7 +2,7 @@
 //! Rust, to the last bit.
 
 use arealight::plan::ShadeOptions;
-use arealight::{Light, LightShape, PackedLights};
+use arealight::{Light, LightShape, PackedLights, Plane};
 use arealight_capi::AREALIGHT_ABI_VERSION;
 use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_tests::TestEngine;
@@ -166,9 +166,12 @@ fn draw(engine: &TestEngine, lights: &[Light]) -> Vec<[f32; 3]> {
         table: engine.table(),
         lights: Resource::buffer(light_buffer.handle()),
         light_vertices: Resource::buffer(vertex_buffer.handle()),
-        position: of(&position),
-        normal: of(&normal),
-        base_color: of(&base_color),
+        planes: [
+            (Plane::Position, of(&position)),
+            (Plane::Normal, of(&normal)),
+            (Plane::BaseColor, of(&base_color)),
+        ]
+        .into(),
         radiance: Resource::StorageImage { view: radiance.view() },
         shapes: Some(Resource::buffer(shape_buffer.handle())),
         ..ShadeResources::default()

@@ -1,7 +1,7 @@
 //! A whole frame: visibility, shading and the reference, each against its own independent twin.
 
 use arealight::plan::ShadeOptions;
-use arealight::{Effects, Light, Quality};
+use arealight::{Effects, Light, Plane, Quality};
 use arealight_engine::host::{Image, Usage};
 use arealight_engine::{EvalPoint, Reference, SceneRenderer};
 use arealight_oracle::cubature::Settings;
@@ -57,11 +57,11 @@ fn from_octahedron(x: f64, y: f64) -> DVec3 {
 /// What the G-buffer says of each pixel that has a surface, as points for eval, with `light`.
 fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
     let g_buffer = view.renderer.g_buffer();
-    let (positions, normals) = (texels(&g_buffer.position), texels(&g_buffer.normal));
-    let (colors, speculars) = (half_texels(&g_buffer.base_color), texels(&g_buffer.specular));
-    let coats = texels(&g_buffer.coat);
-    let sheens = texels(&g_buffer.sheen);
-    let films = texels(&g_buffer.film);
+    let (positions, normals) = (texels(&g_buffer[Plane::Position]), texels(&g_buffer[Plane::Normal]));
+    let (colors, speculars) = (half_texels(&g_buffer[Plane::BaseColor]), texels(&g_buffer[Plane::Specular]));
+    let coats = texels(&g_buffer[Plane::Coat]);
+    let sheens = texels(&g_buffer[Plane::Sheen]);
+    let films = texels(&g_buffer[Plane::Film]);
     let point = |i: usize| {
         let position = positions[i].truncate().as_dvec3();
         let material = arealight_oracle::material::Material {
@@ -100,7 +100,7 @@ fn visibility_finds_what_a_float64_walk_finds() {
     for name in ["room.glb", "sweep.glb"] {
         let scene = scene(name);
         let view = view(&engine, &scene);
-        let positions = texels(&view.renderer.g_buffer().position);
+        let positions = texels(&view.renderer.g_buffer()[Plane::Position]);
         let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
         let (mut agree, mut edges) = (0, 0);
         for (i, found) in positions.iter().enumerate() {
@@ -312,7 +312,8 @@ fn vertex_colours_multiply_the_base_colour_and_alpha() {
     for triangle in &mut scene.triangles {
         triangle.colors = parts;
     }
-    let base_colors = |scene: &Scene| half_texels(&view(&engine, scene).renderer.g_buffer().base_color);
+    let base_colors =
+        |scene: &Scene| half_texels(&view(&engine, scene).renderer.g_buffer()[Plane::BaseColor]);
     let plain = base_colors(&self::scene("sweep.glb"));
     let colored = base_colors(&scene);
     let view = view(&engine, &scene);

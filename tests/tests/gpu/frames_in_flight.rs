@@ -2,7 +2,7 @@
 //! recorded on several threads.
 
 use arealight::plan::ShadeOptions;
-use arealight::{Effects, LightSummary, PackedLights};
+use arealight::{Effects, LightSummary, PackedLights, Plane};
 use arealight_engine::Kept;
 use arealight_engine::host::{DescriptorPool, Image, ImageDescription, Usage};
 use arealight_tests::TestEngine;
@@ -48,9 +48,12 @@ impl Images {
             table: engine.table(),
             lights: Resource::buffer(buffers[0]),
             light_vertices: Resource::buffer(buffers[1]),
-            position: of(&position),
-            normal: of(&normal),
-            base_color: of(&base_color),
+            planes: [
+                (Plane::Position, of(&position)),
+                (Plane::Normal, of(&normal)),
+                (Plane::BaseColor, of(&base_color)),
+            ]
+            .into(),
             radiance: Resource::StorageImage { view: radiance.view() },
             ..ShadeResources::default()
         };

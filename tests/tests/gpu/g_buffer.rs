@@ -1,7 +1,7 @@
 //! G-buffers of other layouts: the same surface in, the same radiance out.
 
-use arealight::Effects;
 use arealight::plan::{GBufferLayout, ShadeOptions};
+use arealight::{Effects, Plane};
 use arealight_capi::{
     ArealightImage, ArealightPassOptions, ArealightResult, arealight_pass_create_with_module,
     arealight_pass_destroy,
@@ -9,7 +9,7 @@ use arealight_capi::{
 use arealight_tests::TestEngine;
 use arealight_tests::c_library::{CLibrary, DeviceMemory, c_lamp, good, refused};
 use arealight_tests::kernel::shade_with_bridge;
-use arealight_tests::one_pixel::{OnePixel, lamp, sampled};
+use arealight_tests::one_pixel::{OnePixel, lamp};
 use arealight_vk::{Error, ShadePass, ShadePassInfo};
 use ash::vk::Format;
 use glam::{Vec3, Vec4};
@@ -41,9 +41,9 @@ impl Surface {
     /// What the default layout shades of it: radiance.
     fn shade(&self, engine: &TestEngine) -> Vec3 {
         let mut pixel = pixel(engine);
-        pixel.normal = sampled(engine, FLOAT, self.normal.extend(self.roughness).to_array());
-        pixel.base_color = sampled(engine, FLOAT, self.base_color.extend(self.metalness).to_array());
-        pixel.specular = sampled(engine, FLOAT, Vec3::splat(self.f0).extend(1.0).to_array());
+        pixel.set(Plane::Normal, FLOAT, self.normal.extend(self.roughness).to_array());
+        pixel.set(Plane::BaseColor, FLOAT, self.base_color.extend(self.metalness).to_array());
+        pixel.set(Plane::Specular, FLOAT, Vec3::splat(self.f0).extend(1.0).to_array());
         pixel.shade(options(GBufferLayout::Arealight), &[lamp()], CAMERA, None).truncate()
     }
 }
@@ -99,7 +99,7 @@ fn surfaces_of_other_layouts_are_shaded_as_ours(engine: &TestEngine) {
     // What the images hold, read back here by what each engine's documents say
     let stored = Surface { base_color: Vec3::new(red, green, blue), ..exact };
     let mut pixel = pixel(engine);
-    pixel.base_color = sampled(engine, Format::R8G8B8A8_UNORM, color);
+    pixel.set(Plane::BaseColor, Format::R8G8B8A8_UNORM, color);
     let mut layouts = vec![];
 
     // Unreal Engine: ten bits of (n + 1) / 2; metallic, specular, roughness
@@ -107,8 +107,8 @@ fn surfaces_of_other_layouts_are_shaded_as_ours(engine: &TestEngine) {
     let word = ten[0] | ten[1] << 10 | ten[2] << 20;
     let material = bytes([exact.metalness, 0.75, exact.roughness, 1.0 / 255.0]);
     let [metalness, specular, roughness, _] = of_bytes(material);
-    pixel.normal = sampled(engine, Format::A2B10G10R10_UNORM_PACK32, word);
-    pixel.specular = sampled(engine, Format::R8G8B8A8_UNORM, material);
+    pixel.set(Plane::Normal, Format::A2B10G10R10_UNORM_PACK32, word);
+    pixel.set(Plane::Specular, Format::R8G8B8A8_UNORM, material);
     let shaded = pixel.shade(options(GBufferLayout::Unreal), &[lamp()], CAMERA, None).truncate();
     let normal = Vec3::from_array(ten.map(|n| of_unorm(n, 10) * 2.0 - 1.0));
     let surface = Surface { normal, roughness, metalness, f0: 0.08 * specular, ..stored };
@@ -119,8 +119,8 @@ fn surfaces_of_other_layouts_are_shaded_as_ours(engine: &TestEngine) {
     let [x, y, z] = exact.normal.to_array().map(|n| snorm(n, 8));
     let smoothness = snorm(1.0 - exact.roughness, 8);
     let reflectivity = bytes([0.04 + 0.96 * exact.metalness, 0.0, 0.0, 1.0]);
-    pixel.normal = sampled(engine, Format::R8G8B8A8_SNORM, [x as i8, y as i8, z as i8, smoothness as i8]);
-    pixel.specular = sampled(engine, Format::R8G8B8A8_UNORM, reflectivity);
+    pixel.set(Plane::Normal, Format::R8G8B8A8_SNORM, [x as i8, y as i8, z as i8, smoothness as i8]);
+    pixel.set(Plane::Specular, Format::R8G8B8A8_UNORM, reflectivity);
     let shaded = pixel.shade(options(GBufferLayout::Unity), &[lamp()], CAMERA, None).truncate();
     let surface = Surface {
         normal: Vec3::from_array([x, y, z].map(|n| of_snorm(n, 8))),
@@ -140,8 +140,8 @@ fn surfaces_of_other_layouts_are_shaded_as_ours(engine: &TestEngine) {
         let place = place.map(|n| snorm(n, 16));
         let material = bytes([0.5, exact.roughness, exact.metalness, 0.0]);
         let [_, roughness, metalness, _] = of_bytes(material);
-        pixel.normal = sampled(engine, Format::R16G16_SNORM, place.map(|n| n as i16));
-        pixel.specular = sampled(engine, Format::R8G8B8A8_UNORM, material);
+        pixel.set(Plane::Normal, Format::R16G16_SNORM, place.map(|n| n as i16));
+        pixel.set(Plane::Specular, Format::R8G8B8A8_UNORM, material);
         let shaded = pixel.shade(options(GBufferLayout::Octahedral), &[lamp()], CAMERA, None).truncate();
         // The normal as it was: 16 bits move it by 1e-4 at most, and what is reflected by 1e-3
         let ours = Surface { normal, roughness, metalness, ..stored }.shade(engine);
@@ -173,7 +173,7 @@ fn a_bridge_of_the_host_reads_its_own_g_buffer(engine: &TestEngine) {
         u32::from_le_bytes(color),
         0,
     ];
-    pixel.normal = sampled(engine, Format::R32G32B32A32_UINT, words);
+    pixel.set(Plane::Normal, Format::R32G32B32A32_UINT, words);
     pixel.module = Some(shade_with_bridge());
     let shaded = pixel.shade(options(GBufferLayout::Arealight), &[lamp()], CAMERA, None).truncate();
     let [red, green, blue, metalness] = of_bytes(color);

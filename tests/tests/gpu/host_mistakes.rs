@@ -126,7 +126,7 @@ fn a_set_that_points_at_a_destroyed_table_is_refused() {
         write(table.resource());
         drop(table);
         host.with_allocator(|allocator| allocator.free(memory)).unwrap();
-        let constants = vec![0; pass.kernel().push_constant_size as usize];
+        let constants = vec![0; pass.kernel().push_constant_size() as usize];
         host.submit(|commands| {
             let error = pass.record(commands, set, &constants, [1; 3]).unwrap_err();
             assert_eq!(error, Error::Destroyed { field: "table_image" });

@@ -1,100 +1,72 @@
-//! The manifest in Rust and the embedded SPIR-V say the same: bindings, group sizes, constants, push
-//! constants, and every offset of every structure that the CPU writes.
+//! What kernels say of themselves is what another reader finds in their modules; every offset of every
+//! structure that the CPU writes; what pruned modules bind.
 
 mod reflection;
 mod structures;
 
-use arealight::kernels::{self, Access, Kernel};
+use arealight::kernels::{self, Access, Binding, BindingKind, Kernel, constant};
 use arealight::plan::{ShadeOptions, shade_specialization, shade_tiles_specialization};
 use arealight::{Effects, LightSummary, TileClass};
 use arealight_tool_kernels as tool;
-use reflection::{binding_name, bound_variables, literal, module, parsed, reflected};
-use rspirv::dr::{Module, Operand};
-use rspirv::spirv::{Decoration, ExecutionMode, Op};
+use reflection::{bound_variables, module, parsed, reflected};
+use rspirv::dr::Module;
 
-/// Compares the manifest of a kernel with its module; the first difference in words.
-fn compare(kernel: &Kernel, module: &Module) -> Result<(), String> {
-    let bound = bound_variables(module);
-    let numbers: Vec<u32> = bound.keys().copied().collect();
-    let used = || (0u32..).zip(kernel.bindings).filter(|(_, binding)| binding.access != Access::None);
-    if numbers != used().map(|(number, _)| number).collect::<Vec<_>>() {
-        return Err(format!("{}: the module binds {numbers:?}", kernel.name));
-    }
-    for (number, binding) in used() {
-        let found = reflected(module, bound[&number]);
-        if found != (binding.kind, binding.access) {
-            return Err(format!("{}: binding '{}' is {found:?}", kernel.name, binding.name));
-        }
-        let named = binding_name(module, bound[&number]);
-        if named != binding.name {
-            return Err(format!("{}: binding '{}' is named '{named}'", kernel.name, binding.name));
-        }
-    }
+/// What a kernel binds, without what it has for other kernels of its pass.
+fn used(kernel: &Kernel) -> impl Iterator<Item = &Binding> {
+    kernel.bindings().iter().filter(|binding| binding.access != Access::None)
+}
 
-    let local_size = module.entry_points.len() == 1
-        && module.execution_modes.iter().any(|mode| {
-            mode.operands[1] == Operand::ExecutionMode(ExecutionMode::LocalSize)
-                && [2, 3, 4].map(|i| literal(&mode.operands[i])) == kernel.local_size
-        });
-    if !local_size {
-        return Err(format!("{}: another local size", kernel.name));
-    }
-
-    let mut constants: Vec<u32> = module
-        .annotations
-        .iter()
-        .filter(|i| {
-            i.class.opcode == Op::Decorate && i.operands[1] == Operand::Decoration(Decoration::SpecId)
+/// The bindings of a kernel as another reader of its module finds them.
+fn found(module: &Module) -> Vec<(u32, String, BindingKind, Access)> {
+    let bound = bound_variables(module).into_iter();
+    bound
+        .map(|(number, variable)| {
+            let (name, kind, access) = reflected(module, variable);
+            (number, name, kind, access)
         })
-        .map(|i| literal(&i.operands[2]))
-        .collect();
-    constants.sort_unstable();
-    if constants != kernel.constants {
-        return Err(format!("{}: the module's constants are {constants:?}", kernel.name));
-    }
-    Ok(())
+        .collect()
 }
 
 #[test]
-fn the_manifest_agrees_with_every_module() {
-    for kernel in kernels::ALL.into_iter().chain(tool::kernels::ALL) {
-        compare(kernel, &module(kernel)).unwrap();
-    }
-}
-
-#[test]
-fn the_comparison_can_fail() {
-    // One kernel's manifest against another's module
-    assert!(compare(&kernels::SHADE, &module(&tool::kernels::EVAL)).is_err());
-    // The right module, one binding's kind changed
-    let swapped = Kernel {
-        bindings: vec![tool::kernels::EVAL.bindings[1]; tool::kernels::EVAL.bindings.len()].leak(),
-        ..copy(&tool::kernels::EVAL)
+fn kernels_say_what_another_reader_finds() {
+    let of = |kernel: &'static Kernel| -> Vec<_> {
+        used(kernel).map(|one| (one.number, one.name.to_owned(), one.kind, one.access)).collect()
     };
-    assert!(compare(&swapped, &module(&tool::kernels::EVAL)).unwrap_err().contains("SampledImage"));
-    // A binding that is said not to be used, and one that is not used
-    for access in [Access::None, Access::Read] {
-        let bindings = kernels::CLASSIFY.bindings.iter().map(|binding| match binding.access {
-            Access::Read if access == Access::None && binding.name == "shapes" => binding.unused(),
-            Access::None => kernels::Binding { access, ..*binding },
-            _ => *binding,
-        });
-        let changed = Kernel { bindings: bindings.collect::<Vec<_>>().leak(), ..copy(&kernels::CLASSIFY) };
-        assert!(compare(&changed, &module(&kernels::CLASSIFY)).unwrap_err().contains("the module binds"));
+    for kernel in kernels::ALL.into_iter().chain(tool::kernels::ALL) {
+        assert_eq!(of(kernel), found(&module(kernel)), "{}", kernel.name);
     }
-    // Two bindings of one kind in each other's place: buffers, then images
-    for (kernel, one, other) in [(&tool::kernels::EVAL, 1, 2), (&kernels::SHADE, 4, 5)] {
-        let mut bindings = kernel.bindings.to_vec();
-        bindings.swap(one, other);
-        let swapped = Kernel { bindings: Box::leak(bindings.into()), ..copy(kernel) };
-        let error = compare(&swapped, &module(kernel)).unwrap_err();
-        assert!(error.ends_with(&format!("is named '{}'", kernel.bindings[one].name)), "{error}");
+    // The twin: another kernel of the pass
+    assert_ne!(of(&kernels::SHADE), found(&module(&kernels::CLASSIFY)));
+}
+
+#[test]
+fn kernels_of_a_pass_have_one_descriptor_set() {
+    for pass in [&kernels::SHADE_PASS[..], &kernels::SHADOW_PASS] {
+        let set = |kernel: &Kernel| -> Vec<_> {
+            kernel.bindings().iter().map(|one| (one.number, one.kind)).collect()
+        };
+        for kernel in pass {
+            assert_eq!(set(kernel), set(pass[0]), "{}", kernel.name);
+            assert!(used(kernel).count() < kernel.bindings().len(), "{}", kernel.name);
+        }
     }
-    // Another group size, another constant
-    let resized = Kernel { local_size: [32, 1, 1], ..copy(&tool::kernels::EVAL) };
-    assert!(compare(&resized, &module(&tool::kernels::EVAL)).unwrap_err().contains("local size"));
-    let constants = Kernel { constants: &[0], ..copy(&tool::kernels::EVAL) };
-    assert!(compare(&constants, &module(&tool::kernels::EVAL)).unwrap_err().contains("constants"));
+}
+
+#[test]
+fn sizes_and_constants_are_those_of_the_shaders() {
+    let shade = &kernels::SHADE;
+    assert_eq!((shade.local_size(), kernels::TEXTURE_LOAD.local_size()), ([8, 8, 1], [32, 2, 1]));
+    let size = |kernel: &Kernel| kernel.push_constant_size() as usize;
+    assert_eq!(size(shade), size_of::<arealight::gpu::ShadeConstants>());
+    assert_eq!(size(&kernels::SHADOW_FILTER), size_of::<arealight::gpu::ShadowConstants>());
+    assert_eq!(size(&kernels::TEXTURE_LOAD), size_of::<arealight::gpu::TextureLoadConstants>());
+    assert_eq!(size(&kernels::TEXTURE_BLUR), 4 * (arealight::pyramid::MOST_TAPS + 1));
+    assert_eq!(size(&tool::kernels::EVAL), size_of::<tool::gpu::EvalConstants>());
+    assert_eq!(size(&tool::kernels::REFERENCE), size_of::<tool::gpu::ReferenceConstants>());
+    assert_eq!(size(&tool::kernels::VISIBILITY), size_of::<tool::gpu::VisibilityConstants>());
+    assert_eq!(kernels::TEXTURE_BLUR.constants(), [constant::RADIUS]);
+    assert_eq!(tool::kernels::REFERENCE.constants(), [tool::kernels::SHADOWS, tool::kernels::COUPLED]);
+    assert!(shade.constants().contains(&constant::SAMPLES) && !shade.constants().contains(&constant::CULL));
 }
 
 #[test]
@@ -111,25 +83,19 @@ fn a_pruned_module_binds_what_its_frames_use() {
         let pruned = arealight_vk::prune(&kernels::SHADE.words(), &specialization);
         bound_variables(&parsed(&pruned)).into_keys().collect::<Vec<u32>>()
     };
-    let of_frames: Vec<u32> = (0..kernels::FRAME_BINDINGS as u32).collect();
+    let number = |name| kernels::SHADE.bindings().iter().find(|one| one.name == name).unwrap().number;
+    let of_frames: Vec<u32> = used(&kernels::SHADE)
+        .filter(|one| !kernels::TILE_BINDINGS.contains(&one.name) && one.name != "light_counts")
+        .map(|one| one.number)
+        .collect();
+    let with = |name| [of_frames.as_slice(), &[number(name)]].concat();
     assert_eq!(bound(shade_specialization(options, lights)), of_frames);
     let counted = ShadeOptions { light_counts: true, ..options };
-    let of_counted = bound(shade_specialization(counted, lights));
-    assert_eq!(of_counted, [of_frames.as_slice(), &[kernels::FRAME_BINDINGS as u32]].concat());
+    assert_eq!(bound(shade_specialization(counted, lights)), with("light_counts"));
     // Tiles have their lists, too; a frame of quads without shadows has no more than quads need
-    let of_tiles = bound(shade_tiles_specialization(options, lights, TileClass::Any));
-    assert_eq!(of_tiles, [of_frames.as_slice(), &[kernels::FRAME_BINDINGS as u32 + 1]].concat());
+    assert_eq!(bound(shade_tiles_specialization(options, lights, TileClass::Any)), with("tile_lists"));
     let quads = LightSummary { effects: Effects::empty(), ..lights };
-    assert_eq!(bound(shade_specialization(ShadeOptions::default(), quads)), [0, 1, 2, 3, 4, 5, 7]);
-}
-
-fn copy(kernel: &Kernel) -> Kernel {
-    Kernel {
-        name: kernel.name,
-        spirv: kernel.spirv,
-        local_size: kernel.local_size,
-        push_constant_size: kernel.push_constant_size,
-        bindings: kernel.bindings,
-        constants: kernel.constants,
-    }
+    let needed = ["table_image", "lights", "light_vertices", "g_position", "g_normal", "g_base_color"];
+    let needed: Vec<u32> = needed.into_iter().chain(["radiance_image"]).map(number).collect();
+    assert_eq!(bound(shade_specialization(ShadeOptions::default(), quads)), needed);
 }

@@ -2,7 +2,7 @@
 //! The twin of each is a perspective camera that sees as much.
 
 use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
-use arealight::{Light, LightShape, Quality};
+use arealight::{Light, LightShape, Plane, Quality};
 use arealight_engine::host::Usage;
 use arealight_engine::{EngineError, EvalPoint, Reference, SceneRenderer};
 use arealight_oracle::material::Material;
@@ -58,8 +58,8 @@ impl<'a> View<'a> {
     /// World positions, and normals.
     fn surfaces(&self) -> Vec<[DVec3; 2]> {
         let g_buffer = self.renderer.g_buffer();
-        let [positions, normals]: [Vec<[f32; 4]>; 2] =
-            [&g_buffer.position, &g_buffer.normal].map(|image| image.download(Usage::COMPUTE_READ).unwrap());
+        let [positions, normals]: [Vec<[f32; 4]>; 2] = [&g_buffer[Plane::Position], &g_buffer[Plane::Normal]]
+            .map(|image| image.download(Usage::COMPUTE_READ).unwrap());
         let vector = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z).as_dvec3();
         let pixels = positions.into_iter().zip(normals);
         pixels.map(|(position, normal)| [vector(position) + self.buffers.origin, vector(normal)]).collect()

@@ -1,7 +1,7 @@
 //! Where radiance goes: overwritten or added, in one image or apart, in 32 bits or 16.
 
 use arealight::plan::{Output, RadianceFormat, ShadeOptions};
-use arealight::{Effects, Light};
+use arealight::{Effects, Light, Plane};
 use arealight_tests::TestEngine;
 use arealight_tests::one_pixel::{BEFORE, OnePixel, lamp};
 use arealight_vk::{Error, Resource, ShadePass, ShadeResources};
@@ -105,9 +105,7 @@ fn the_glossy_image_is_asked_for_where_lobes_are_apart() {
         table: image,
         lights: buffer,
         light_vertices: buffer,
-        position: image,
-        normal: image,
-        base_color: image,
+        planes: [(Plane::Position, image), (Plane::Normal, image), (Plane::BaseColor, image)].into(),
         radiance: view(7),
         ..ShadeResources::default()
     };

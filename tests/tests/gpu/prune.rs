@@ -114,7 +114,7 @@ fn specializations(kernel: &Kernel) -> Vec<Vec<(u32, u32)>> {
         values.push((constant::CLASS, class as u32));
         all.push(values);
     }
-    let has = |(id, _): &(u32, u32)| kernel.constants.contains(id);
+    let has = |(id, _): &(u32, u32)| kernel.constants().contains(id);
     let mut kept: Vec<Vec<_>> =
         all.into_iter().map(|pairs| pairs.into_iter().filter(has).collect()).collect();
     kept.push(Vec::new());

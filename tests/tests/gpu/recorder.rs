@@ -1,6 +1,6 @@
 //! A host's mistakes have typed answers that name the field; and what the recorder publishes is what it does.
 
-use arealight::kernels::{self, FRAME_BINDINGS, constant};
+use arealight::kernels::{self, SHADE, TILE_BINDINGS, constant};
 use arealight::plan::ShadeOptions;
 use arealight::table::LAYERS;
 use arealight::{Effects, LightSummary};
@@ -92,10 +92,10 @@ fn resources_that_do_not_fit_are_refused_by_name() {
         wrong[0] = whole;
         assert_eq!(field(&write(&wrong).unwrap_err()), "table_image");
         wrong = right;
-        wrong[3] = Resource::buffer(vk::Buffer::null());
+        wrong[1] = Resource::buffer(vk::Buffer::null());
         let error = write(&wrong).unwrap_err();
-        assert_eq!(field(&error), "cases");
-        assert!(error.to_string().contains("GpuCase[]"), "says what it must hold: {error}");
+        assert_eq!(field(&error), "lights");
+        assert!(error.to_string().contains("must hold GpuLight[]"), "says what it must hold: {error}");
     }
 }
 
@@ -122,8 +122,9 @@ fn accesses_and_pool_sizes_say_what_the_manifest_says() {
     let Some(engine) = TestEngine::new() else { return };
     recording(&engine, ShadeOptions::default(), |pass, _, _| {
         let accesses = pass.accesses();
-        // All but the stencil
-        assert_eq!(accesses.len(), FRAME_BINDINGS - 1);
+        // All but the stencil and the counts of lights
+        let of_frames = SHADE.bindings().len() - TILE_BINDINGS.len() - 1;
+        assert_eq!(accesses.len(), of_frames - 1);
         for access in &accesses {
             assert_eq!(access.stage, vk::PipelineStageFlags::COMPUTE_SHADER);
             let written = access.access.contains(vk::AccessFlags::SHADER_WRITE);
@@ -132,7 +133,7 @@ fn accesses_and_pool_sizes_say_what_the_manifest_says() {
             assert_eq!(access.layout == vk::ImageLayout::GENERAL, is_stored);
         }
         let descriptors: u32 = pass.pool_sizes(3).iter().map(|size| size.descriptor_count).sum();
-        assert_eq!(descriptors as usize, 3 * FRAME_BINDINGS);
+        assert_eq!(descriptors as usize, 3 * of_frames);
     });
 }
 
@@ -164,7 +165,7 @@ fn every_kernel_makes_a_pipeline_with_every_constant() {
     let Some(engine) = TestEngine::new() else { return };
     for kernel in kernels::ALL.into_iter().chain(arealight_tool_kernels::kernels::ALL) {
         for value in [0, 1] {
-            let constants: Vec<_> = kernel.constants.iter().map(|&id| (id, value)).collect();
+            let constants: Vec<_> = kernel.constants().iter().map(|&id| (id, value)).collect();
             // SAFETY: No submission uses it.
             unsafe { ComputePass::new(engine.context(), kernel, &constants) }.unwrap();
         }

@@ -2,9 +2,9 @@
 //! sample's place.
 
 use crate::recorder::field;
-use arealight::LightTable;
 use arealight::kernels::read_samples;
 use arealight::plan::{Output, ShadeOptions};
+use arealight::{LightTable, Plane};
 use arealight_oracle::material::Surface;
 use arealight_tests::TestEngine;
 use arealight_tests::floor::{
@@ -176,7 +176,9 @@ fn pixels_of_several_samples_are_the_mean_over_their_surfaces() {
         }
         let images = Multisampled::new(&engine, samples, &texels(samples, from_depth));
         let [position, normal, base_color] = images.resources();
-        let resources = ShadeResources { position, normal, base_color, ..floor.resources() };
+        let planes =
+            [(Plane::Position, position), (Plane::Normal, normal), (Plane::BaseColor, base_color)].into();
+        let resources = ShadeResources { planes, ..floor.resources() };
         let options = ShadeOptions { samples, from_depth, output, ..ShadeOptions::default() };
         let position_from_clip = Some(clip_from_position().inverse().as_mat4());
         let frame = ShadeFrame { position_from_clip, ..floor.frame() };

@@ -1,6 +1,7 @@
 //! What a host may get wrong about shadows: each is an error that names the field, and nothing is recorded.
 
 use crate::recorder::field;
+use arealight::Plane;
 use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
 use arealight_tests::TestEngine;
 use arealight_tests::frame::{scene, with_renderer};
@@ -69,21 +70,18 @@ fn what_a_shadow_pass_reads_is_asked_for() {
             let is = |error: Result<(), Error>, name: &str| assert_eq!(field(&error.unwrap_err()), name);
             is(shade.write_set(none, &resources), "picks");
             let buffer = resources.lights;
-            let mut of_shadows = ShadowResources {
-                shadow: resources.radiance,
-                radiance: None,
-                history: None,
-                motion: None,
-                blockers: None,
-            };
+            let mut of_shadows =
+                ShadowResources { shadow: resources.radiance, radiance: None, history: None, blockers: None };
             is(shadow.write_set(none, &resources, &of_shadows), "picks");
-            let resources = ShadeResources { picks: Some(buffer), ..resources };
+            let planes = resources.planes.with(Plane::Motion, None);
+            let resources = ShadeResources { picks: Some(buffer), planes, ..resources };
             is(shadow.write_set(none, &resources, &of_shadows), "blockers");
             is(over_frames.write_set(none, &resources, &of_shadows), "history");
             of_shadows.history = Some(buffer);
             is(over_frames.write_set(none, &resources, &of_shadows), "motion");
             of_shadows.shadow = Resource::buffer(vk::Buffer::null());
-            of_shadows.motion = Some(resources.position);
+            let planes = resources.planes.with(Plane::Motion, resources.planes[Plane::Position]);
+            let resources = ShadeResources { planes, ..resources };
             of_shadows.blockers = Some(BlockerResources { nodes: buffer, triangles: buffer });
             is(over_frames.write_set(none, &resources, &of_shadows), "shadow_image");
         });

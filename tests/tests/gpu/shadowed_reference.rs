@@ -1,6 +1,6 @@
 //! The Monte Carlo reference with shadows, against the oracle's exact visibility.
 
-use arealight::{Light, LightShape, TubeEnds};
+use arealight::{Light, LightShape, Plane, TubeEnds};
 use arealight_engine::host::Usage;
 use arealight_engine::{Reference, SceneRenderer};
 use arealight_oracle::cubature::Settings;
@@ -83,7 +83,7 @@ impl View {
             image.download(Usage::COMPUTE_READ).expect("a picture")
         };
         let (positions, normals) =
-            (download(&renderer.g_buffer().position), download(&renderer.g_buffer().normal));
+            (download(&renderer.g_buffer()[Plane::Position]), download(&renderer.g_buffer()[Plane::Normal]));
         let vector = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z).as_dvec3();
         let pixels =
             positions.into_iter().zip(normals).zip(radiance).filter(|((place, _), _)| place[3] > 0.0);

@@ -2,7 +2,8 @@
 
 use arealight::plan::ShadeOptions;
 use arealight::{
-    Effects, Light, LightShape, LightSummary, LightTable, LightTexture, PackedLights, Quality, TubeEnds,
+    Effects, Light, LightShape, LightSummary, LightTable, LightTexture, PackedLights, Plane, Quality,
+    TubeEnds,
 };
 use arealight_benches::pictures;
 use arealight_engine::host::{Image, ImageDescription, Usage};
@@ -158,14 +159,17 @@ fn shade(engine: &Engine, effects: Effects, lights: &[Light]) -> Vec<Vec4> {
             table: engine.table(),
             lights: Resource::buffer(buffer.handle()),
             light_vertices: Resource::buffer(buffer.handle()),
-            position: read(&position),
-            normal: read(&normal),
-            base_color: read(&color),
-            specular: Some(read(&specular)),
-            coat: Some(read(&nothing)),
-            sheen: Some(read(&nothing)),
-            anisotropy: Some(read(&nothing)),
-            film: Some(read(&nothing)),
+            planes: [
+                (Plane::Position, read(&position)),
+                (Plane::Normal, read(&normal)),
+                (Plane::BaseColor, read(&color)),
+                (Plane::Specular, read(&specular)),
+                (Plane::Coat, read(&nothing)),
+                (Plane::Sheen, read(&nothing)),
+                (Plane::Anisotropy, read(&nothing)),
+                (Plane::Film, read(&nothing)),
+            ]
+            .into(),
             radiance: Resource::StorageImage { view: radiance.view() },
             light_textures: Some(engine.light_textures()),
             shapes: Some(Resource::buffer(buffer.handle())),

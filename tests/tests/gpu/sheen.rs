@@ -1,11 +1,11 @@
 //! Sheen on the GPU: against the float64 twin, against none, and in its image of a G-buffer.
 
 use arealight::plan::GBufferLayout;
-use arealight::{Effects, Quality};
+use arealight::{Effects, Plane, Quality};
 use arealight_engine::EvalPoint;
 use arealight_oracle::material::{Coat, Material, Sheen, Surface};
 use arealight_tests::materials::{lobe_qualities, shape_lights, under_polygon};
-use arealight_tests::one_pixel::{LAYOUTS, OnePixel, material, sampled, under_lamp};
+use arealight_tests::one_pixel::{LAYOUTS, OnePixel, material, under_lamp};
 use arealight_tests::{Random, TestEngine, point, rounding};
 use arealight_vk::ash::vk::Format;
 use glam::{DVec3, Vec3, Vec4};
@@ -151,7 +151,7 @@ fn every_layout_has_its_sheen_in_an_image_of_its_own() {
     let texel = [0.9_f32, 0.5, 0.2, 0.4];
     let shade = |layout, effects, sheen: [f32; 4]| {
         let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);
-        pixel.sheen = sampled(&engine, Format::R32G32B32A32_SFLOAT, sheen);
+        pixel.set(Plane::Sheen, Format::R32G32B32A32_SFLOAT, sheen);
         pixel.shade_under_lamp(layout, effects)
     };
     for layout in LAYOUTS {

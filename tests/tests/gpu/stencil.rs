@@ -1,5 +1,6 @@
 //! Stencil tests: pixels that fail stay as they are, whatever a frame does to others.
 
+use arealight::Plane;
 use arealight::plan::{Output, ShadeOptions};
 use arealight_tests::TestEngine;
 use arealight_tests::floor::{Floor, SIZE, image, lamps, pixels, read};
@@ -23,7 +24,8 @@ fn pixels_that_fail_the_stencil_test_stay_as_they_are() {
     let floor = Floor::new(&engine, &lamps());
     let stencils: Vec<u8> = pixels().map(stencil).collect();
     let image = image(&engine, SIZE, vk::Format::R8_UINT, vk::ImageUsageFlags::SAMPLED, &stencils);
-    let resources = ShadeResources { stencil: Some(read(&image)), ..floor.resources() };
+    let planes = floor.resources().planes.with(Plane::Stencil, Some(read(&image)));
+    let resources = ShadeResources { planes, ..floor.resources() };
     for (tiles, output, compare_mask, reference) in [
         (false, Output::Overwrite, 0x83, 0x02),
         (false, Output::Add, 0x80, 0x80),

@@ -3,7 +3,7 @@
 
 use arealight::gpu::GpuLight;
 use arealight::plan::ShadeOptions;
-use arealight::{Effects, Horizon, Light, LightShape, LightTable, PackedLights};
+use arealight::{Effects, Horizon, Light, LightShape, LightTable, PackedLights, Plane};
 use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_oracle::material::Material;
 use arealight_tests::lobe::{Lobe, Seen};
@@ -167,10 +167,13 @@ impl<'a> Sweep<'a> {
                 table: self.engine.table(),
                 lights: Resource::buffer(lights.handle()),
                 light_vertices: Resource::buffer(vertices.handle()),
-                position: sampled(position),
-                normal: sampled(normal),
-                base_color: sampled(color),
-                specular: Some(sampled(color)),
+                planes: [
+                    (Plane::Position, sampled(position)),
+                    (Plane::Normal, sampled(normal)),
+                    (Plane::BaseColor, sampled(color)),
+                    (Plane::Specular, sampled(color)),
+                ]
+                .into(),
                 radiance: Resource::StorageImage { view: radiance.view() },
                 ..ShadeResources::default()
             };

@@ -1,5 +1,6 @@
 //! Textures of the visibility kernel, near the image and far from it, against a float64 twin.
 
+use arealight::Plane;
 use arealight::gpu::GpuBvhNode;
 use arealight_engine::SceneRenderer;
 use arealight_engine::host::Usage;
@@ -117,7 +118,7 @@ fn renderer<'a>(engine: &'a TestEngine, scene: &SceneBuffers) -> SceneRenderer<'
 /// The roughness that the kernel finds at each pixel of the row: the green channel, bilinear.
 fn sampled(engine: &TestEngine, scene: &SceneBuffers) -> Vec<f64> {
     let renderer = renderer(engine, scene);
-    let normal: Vec<[f32; 4]> = renderer.g_buffer().normal.download(Usage::COMPUTE_READ).unwrap();
+    let normal: Vec<[f32; 4]> = renderer.g_buffer()[Plane::Normal].download(Usage::COMPUTE_READ).unwrap();
     normal.iter().map(|texel| texel[3].into()).collect()
 }
 
@@ -209,7 +210,7 @@ fn textures_multiply_a_dielectrics_reflectances() {
         (material.specular_texture, material.specular_color_texture) =
             (specular_texture, specular_color_texture);
         let specular: Vec<[f32; 4]> =
-            renderer(&engine, &scene).g_buffer().specular.download(Usage::COMPUTE_READ).unwrap();
+            renderer(&engine, &scene).g_buffer()[Plane::Specular].download(Usage::COMPUTE_READ).unwrap();
         specular[0].map(f64::from)
     };
     let none = GpuMaterial::NO_TEXTURE;

@@ -2,12 +2,12 @@
 //! and in their image of a G-buffer.
 
 use arealight::plan::{GBufferLayout, ShadeOptions};
-use arealight::{Effects, Quality, SpecularLobes};
+use arealight::{Effects, Plane, Quality, SpecularLobes};
 use arealight_engine::EvalPoint;
 use arealight_oracle::material::{Coat, Interface, Material, Surface};
 use arealight_oracle::thin_film::ThinFilm;
 use arealight_tests::materials::under_polygon;
-use arealight_tests::one_pixel::{CAMERA, LAYOUTS, OnePixel, lamp, material, sampled, under_lamp};
+use arealight_tests::one_pixel::{CAMERA, LAYOUTS, OnePixel, lamp, material, under_lamp};
 use arealight_tests::{Random, TestEngine, rounding};
 use arealight_vk::ash::vk::Format;
 use glam::{DVec3, Vec3, Vec4};
@@ -117,7 +117,7 @@ fn every_layout_has_its_film_in_an_image_of_its_own() {
     let Some(engine) = TestEngine::new() else { return };
     let shade = |layout, effects, film: [f32; 4]| {
         let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);
-        pixel.film = sampled(&engine, FLOAT, film);
+        pixel.set(Plane::Film, FLOAT, film);
         pixel.shade_under_lamp(layout, effects)
     };
     let (film, texel) = film(0.8);
@@ -143,10 +143,10 @@ fn by_fitted_lobes_a_pass_shows_a_film_as_reflectances_that_hold_it_do() {
     let (roughness, f0, f90) = (0.5_f32, DVec3::new(0.4, 0.3, 0.2), 0.9);
     let shade = |effects, specular_lobes, (f0, f90): (DVec3, f64), film: [f32; 4]| {
         let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);
-        pixel.normal = sampled(&engine, FLOAT, [0.0, 0.0, 1.0, roughness]);
-        pixel.base_color = sampled(&engine, FLOAT, [0.0_f32; 4]);
-        pixel.specular = sampled(&engine, FLOAT, f0.extend(f90).as_vec4().to_array());
-        pixel.film = sampled(&engine, FLOAT, film);
+        pixel.set(Plane::Normal, FLOAT, [0.0, 0.0, 1.0, roughness]);
+        pixel.set(Plane::BaseColor, FLOAT, [0.0_f32; 4]);
+        pixel.set(Plane::Specular, FLOAT, f0.extend(f90).as_vec4().to_array());
+        pixel.set(Plane::Film, FLOAT, film);
         let surfaces = Effects::GLOSSY | Effects::SPECULAR_INPUT | effects;
         let options = ShadeOptions { surfaces, quality: by(specular_lobes), ..ShadeOptions::default() };
         pixel.shade(options, &[lamp()], CAMERA, None).truncate()

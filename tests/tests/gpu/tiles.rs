@@ -2,7 +2,7 @@
 
 use arealight::kernels::{CLASSIFY, SHADE};
 use arealight::plan::{ShadeOptions, TileOptions};
-use arealight::{Effects, Light, LightShape, LightTexture, Quality, TileClass, TubeEnds};
+use arealight::{Effects, Light, LightShape, LightTexture, Plane, Quality, TileClass, TubeEnds};
 use arealight_engine::{SceneRenderer, TileCounts};
 use arealight_oracle::texture::Texture;
 use arealight_scene::Scene;
@@ -410,7 +410,8 @@ fn options_out_of_range_and_missing_buffers_are_refused() {
             assert_eq!(field(pass.write_set(none, &without).unwrap_err()), "tile_lists");
             let without = ShadeResources { lobe_horizons: None, ..resources };
             assert_eq!(field(pass.write_set(none, &without).unwrap_err()), "lobe_horizons");
-            for lists in [None, Some(resources.position), Some(Resource::buffer(vk::Buffer::null()))] {
+            for lists in [None, resources.planes[Plane::Position], Some(Resource::buffer(vk::Buffer::null()))]
+            {
                 let frame = ShadeFrame { tile_lists: lists, ..frame };
                 let error = pass.record(vk::CommandBuffer::null(), none, &frame).unwrap_err();
                 assert_eq!(field(error), "tile_lists");

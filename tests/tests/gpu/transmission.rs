@@ -2,7 +2,7 @@
 //! none, by tiles, with shadows, and against Monte Carlo.
 
 use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
-use arealight::{Effects, Quality};
+use arealight::{Effects, Plane, Quality};
 use arealight_engine::host::Usage;
 use arealight_engine::{EngineError, EvalPoint, Reference, SceneRenderer};
 use arealight_oracle::material::{Interface, Surface};
@@ -59,8 +59,8 @@ fn what_is_let_through_is_what_the_other_side_reflects() {
     let mut texels = vec![];
     let found = reflected(&engine, &scene, |renderer, _| {
         let g_buffer = renderer.g_buffer();
-        let position: Vec<[f32; 4]> = g_buffer.position.download(Usage::COMPUTE_READ).unwrap();
-        let normal: Vec<[f32; 4]> = g_buffer.normal.download(Usage::COMPUTE_READ).unwrap();
+        let position: Vec<[f32; 4]> = g_buffer[Plane::Position].download(Usage::COMPUTE_READ).unwrap();
+        let normal: Vec<[f32; 4]> = g_buffer[Plane::Normal].download(Usage::COMPUTE_READ).unwrap();
         let through: Vec<[u16; 4]> = g_buffer.transmitted.download(Usage::COMPUTE_READ).unwrap();
         let color = |texel: [u16; 4]| Vec4::from_array(texel.map(|bits| f16::from_bits(bits).to_f32()));
         texels = position

@@ -3,7 +3,7 @@
 
 use crate::recorder::field;
 use arealight::plan::{ShadeOptions, TileOptions};
-use arealight::{Light, LightShape, PackedLights, SpecularLobes};
+use arealight::{Light, LightShape, PackedLights, Plane, SpecularLobes};
 use arealight_engine::host::{Image, Location, Usage};
 use arealight_oracle::material::Material;
 use arealight_oracle::shading::{RelativeLight, ltc};
@@ -164,9 +164,12 @@ fn shade(
             table: engine.table(),
             lights: Resource::buffer(light_buffer.handle()),
             light_vertices: Resource::buffer(vertices.handle()),
-            position: read(&depth),
-            normal: read(&normal),
-            base_color: read(&color),
+            planes: [
+                (Plane::Position, read(&depth)),
+                (Plane::Normal, read(&normal)),
+                (Plane::BaseColor, read(&color)),
+            ]
+            .into(),
             radiance: Resource::StorageImage { view: radiance.view() },
             lobe_horizons: Some(Resource::buffer(horizons.handle())),
             tile_lists,

@@ -82,7 +82,7 @@ impl Engine {
     ) -> Result<Vec<Vec3>, EngineError> {
         // Each dispatch takes as many cases as the device has groups for
         let limit = self.host().properties().limits.max_compute_work_group_count[0];
-        let chunk = (limit.min(1 << 16) * kernel.local_size[0]) as usize;
+        let chunk = (limit.min(1 << 16) * kernel.local_size()[0]) as usize;
         let pass = self.passes.pass(kernel, specialization)?;
         let mut radiance = Vec::with_capacity(cases.len());
         for cases in cases.chunks(chunk) {

@@ -2,34 +2,31 @@
 
 use crate::host::{Image, ImageDescription, Usage};
 use crate::{Engine, EngineError};
+use arealight::kernels::{Binding, BindingKind};
+use arealight::planes::{Plane, Texels};
+use arealight_oracle::material::Material;
 use arealight_vk::Resource;
 use ash::vk;
+use glam::{DVec4, Vec3, Vec4};
+use std::ops::Index;
 
-/// The images of a G-buffer and the radiance image, all of one size.
+/// The images of a G-buffer and the radiance image, all of one size: `g_buffer[Plane::Coat]`.
 pub struct GBuffer {
-    /// Position relative to the origin; w is one more than the triangle's index, exactly, and 0 where there
-    /// is no surface.
-    pub position: Image,
-    /// Normal and roughness.
-    pub normal: Image,
-    /// Base colour and metalness.
-    pub base_color: Image,
-    /// Dielectric reflectance.
-    pub specular: Image,
-    /// Weight, roughness and normal of coats.
-    pub coat: Image,
-    /// Colour and roughness of sheen.
-    pub sheen: Image,
-    /// Tangent, roughness along it, and roughness of the diffuse lobe.
-    pub anisotropy: Image,
-    /// Thin films, above the reflectances in the other images.
-    pub film: Image,
-    /// Bound where a kernel has a place for stencils that no frame of ours has. Its contents are undefined.
-    pub stencil: Image,
+    /// By plane. In w of positions is one more than the triangle's index, exactly, and 0 where there is no
+    /// surface. What no frame of ours has, stencils and motion, is a texel.
+    planes: Vec<Image>,
     /// Albedo of what is let through: the base colour of a pass with [`arealight::Effects::TRANSMISSION`].
     pub transmitted: Image,
     /// Radiance.
     pub radiance: Image,
+}
+
+impl Index<Plane> for GBuffer {
+    type Output = Image;
+
+    fn index(&self, plane: Plane) -> &Image {
+        &self.planes[plane as usize]
+    }
 }
 
 impl GBuffer {
@@ -38,7 +35,7 @@ impl GBuffer {
     /// # Errors
     /// [`EngineError::Host`] where the device has no such images or no memory for them.
     pub fn new(engine: &Engine, extent: [u32; 2]) -> Result<Self, EngineError> {
-        let image = |name, format| {
+        let image = |name, format, extent| {
             engine.host().image(&ImageDescription {
                 name,
                 extent,
@@ -50,38 +47,71 @@ impl GBuffer {
         // Normals in float32: in float16 a mirror shows their steps. Reflectances too, so that the usual one
         // is what the shade kernel takes without reading it
         let (full, half) = (vk::Format::R32G32B32A32_SFLOAT, vk::Format::R16G16B16A16_SFLOAT);
+        let plane = |plane: Plane| match (plane, plane.texels()) {
+            (Plane::BaseColor, _) => image(plane.name(), half, extent),
+            (_, Texels::Integers) => image(plane.name(), vk::Format::R32_UINT, [1; 2]),
+            (_, Texels::Offsets) => image(plane.name(), full, [1; 2]),
+            _ => image(plane.name(), full, extent),
+        };
         Ok(Self {
-            position: image("position", full)?,
-            normal: image("normal", full)?,
-            base_color: image("base colour", half)?,
-            specular: image("specular", full)?,
-            coat: image("coat", full)?,
-            sheen: image("sheen", full)?,
-            anisotropy: image("anisotropy", full)?,
-            film: image("thin film", full)?,
-            stencil: image("stencil", vk::Format::R32_UINT)?,
-            transmitted: image("transmitted", half)?,
-            radiance: image("radiance", full)?,
+            planes: Plane::ALL.into_iter().map(plane).collect::<Result<_, _>>()?,
+            transmitted: image("transmitted", half, extent)?,
+            radiance: image("radiance", full, extent)?,
         })
     }
 
-    /// The images that describe surfaces, in the order of the bindings; those of coats, sheen, anisotropy,
-    /// films and transmission are the last.
-    pub fn surfaces(&self) -> [&Image; 9] {
-        let Self {
-            position, normal, base_color, specular, coat, sheen, anisotropy, film, transmitted, ..
-        } = self;
-        [position, normal, base_color, specular, coat, sheen, anisotropy, film, transmitted]
+    /// The images that surfaces are written to and read from: all but radiance.
+    pub fn surfaces(&self) -> impl Iterator<Item = &Image> {
+        self.planes.iter().chain([&self.transmitted])
     }
 
-    /// What stands for the stencils of a kernel that may read some.
-    pub fn no_stencil(&self) -> Resource {
-        Resource::SampledImage { view: self.stencil.view(), layout: Usage::COMPUTE_READ.layout }
+    /// The image that a kernel calls so: a plane by its name, as it is read or with `out_`.
+    fn image(&self, binding: &str) -> Option<&Image> {
+        let name = binding.strip_prefix("out_").or_else(|| binding.strip_prefix("g_")).unwrap_or(binding);
+        match name {
+            "radiance" | "radiance_image" | "glossy_image" => Some(&self.radiance),
+            "transmitted" => Some(&self.transmitted),
+            _ => Plane::ALL.into_iter().find(|plane| plane.name() == name).map(|plane| &self[plane]),
+        }
     }
 
-    /// The surface images as a shading pass reads them.
-    pub fn sampled(&self) -> [Resource; 9] {
-        let layout = Usage::COMPUTE_READ.layout;
-        self.surfaces().map(|image| Resource::SampledImage { view: image.view(), layout })
+    /// What a kernel reads or writes of it at a binding.
+    pub fn bound_at(&self, binding: &Binding) -> Option<Resource> {
+        let image = self.image(binding.name)?;
+        Some(match binding.kind {
+            BindingKind::StorageImage => Resource::StorageImage { view: image.view() },
+            _ => read(image),
+        })
     }
+
+    /// A plane as a shading pass reads it.
+    pub fn read(&self, plane: Plane) -> Resource {
+        read(&self[plane])
+    }
+
+    /// Likewise, what is let through.
+    pub fn read_transmitted(&self) -> Resource {
+        read(&self.transmitted)
+    }
+}
+
+/// What a plane holds of a material on a surface of this normal, in our own layout, without a normal of the
+/// coat's; zeros where it holds nothing of materials.
+pub fn texel_of(material: &Material, normal: Vec3, plane: Plane) -> [f32; 4] {
+    let texel = match plane {
+        Plane::Normal => normal.extend(material.roughness),
+        Plane::BaseColor => material.base_color.extend(material.metalness),
+        Plane::Specular => material.dielectric_f0.extend(material.dielectric_f90),
+        Plane::Coat => Vec4::new(material.coat, material.coat_roughness, 0.0, 0.0),
+        Plane::Sheen => material.sheen_color.extend(material.sheen_roughness),
+        Plane::Film => material
+            .film
+            .map_or(Vec4::ZERO, |film| DVec4::new(film.weight, film.ior, film.thickness, 0.0).as_vec4()),
+        _ => Vec4::ZERO,
+    };
+    texel.to_array()
+}
+
+fn read(image: &Image) -> Resource {
+    Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout }
 }

@@ -20,7 +20,7 @@ mod texture_array;
 mod textures;
 
 pub use eval::{EvalPoint, gpu_case};
-pub use g_buffer::GBuffer;
+pub use g_buffer::{GBuffer, texel_of};
 pub use host::{Host, HostError, HostOptions, Validation};
 pub use kept::Kept;
 pub use passes::{BoundSet, Passes, SharedPass};

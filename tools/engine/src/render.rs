@@ -6,9 +6,9 @@ pub(crate) mod tiled;
 use crate::host::{Buffer, DescriptorPool, Usage};
 use crate::{BoundPass, Engine, EngineError, GBuffer};
 use arealight::gpu::ShadeConstants;
-use arealight::kernels::Kernel;
+use arealight::kernels::{Binding, Kernel};
 use arealight::plan::{Output, ShadeOptions};
-use arealight::{Effects, Light, LightSummary, PackedLights, Quality};
+use arealight::{Effects, Light, LightSummary, PackedLights, Plane, Planes, Quality};
 use arealight_scene::SceneBuffers;
 use arealight_tool_kernels::LightSampling;
 use arealight_tool_kernels::gpu::{ReferenceConstants, VisibilityConstants};
@@ -17,6 +17,9 @@ use arealight_vk::{Resource, ShadeFrame, ShadeResources};
 use ash::vk;
 use glam::{DVec3, Vec4};
 use std::time::Duration;
+
+/// What the kernels call the buffers of a scene.
+const GEOMETRY: [&str; 5] = ["nodes", "triangles", "materials", "textures", "texels"];
 
 /// What the Monte Carlo reference does: [`SceneRenderer::reference`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,7 +58,7 @@ pub struct SceneRenderer<'a> {
     size: [u32; 2],
     camera: VisibilityConstants,
     g_buffer: GBuffer,
-    geometry: [Buffer; 5],
+    geometry: [Buffer; GEOMETRY.len()],
     light_buffer: Buffer,
     vertex_buffer: Buffer,
     shape_buffer: Buffer,
@@ -108,21 +111,15 @@ impl<'a> SceneRenderer<'a> {
     /// # Errors
     /// [`EngineError`] where the device fails.
     pub fn visibility(&mut self) -> Result<Option<Duration>, EngineError> {
-        let [position, normal, base_color, specular, layers @ ..] = self.g_buffer.surfaces();
-        let images =
-            [position, normal, base_color, specular, &self.g_buffer.radiance].into_iter().chain(layers);
-        let stored = images.clone().map(|image| Resource::StorageImage { view: image.view() });
-        let read = self.geometry.iter().map(|buffer| Resource::buffer(buffer.handle()));
-        let pass = self.engine.pass(&VISIBILITY, &[], &read.chain(stored).collect::<Vec<_>>())?;
+        let pass = self.engine.pass(&VISIBILITY, &[], &self.bound_to(&VISIBILITY, &[]))?;
         let took = self.engine.host().try_submit_timed(|commands| {
-            for image in images.clone() {
+            for image in self.g_buffer.surfaces().chain([&self.g_buffer.radiance]) {
                 image.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
             }
             pass.record(commands, &self.camera, self.items())?;
             for image in self.g_buffer.surfaces() {
                 image.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_READ);
             }
-            self.g_buffer.stencil.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_READ);
             Ok::<_, EngineError>(())
         })?;
         self.shown = true;
@@ -207,32 +204,7 @@ impl<'a> SceneRenderer<'a> {
         specialization: &[(u32, u32)],
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let [position, normal, base_color, specular, coat, sheen, anisotropy, film, _] =
-            self.g_buffer.sampled();
-        let resources = [
-            self.engine.table(),
-            Resource::buffer(self.light_buffer.handle()),
-            Resource::buffer(self.vertex_buffer.handle()),
-            position,
-            normal,
-            base_color,
-            specular,
-            Resource::StorageImage { view: self.g_buffer.radiance.view() },
-            self.engine.light_textures(),
-            Resource::buffer(self.shape_buffer.handle()),
-            Resource::StorageImage { view: self.g_buffer.radiance.view() },
-            coat,
-            sheen,
-            anisotropy,
-            film,
-            // Picks of shadow rays, stencils, counts of lights, lists, and horizons of lobes: no frame of
-            // these has one
-            Resource::buffer(self.light_buffer.handle()),
-            self.g_buffer.no_stencil(),
-            Resource::buffer(self.light_buffer.handle()),
-            Resource::buffer(self.light_buffer.handle()),
-            Resource::buffer(self.light_buffer.handle()),
-        ];
+        let resources = self.bound_to(kernel, &[]);
         let pass = self.engine.pass(kernel, specialization, &resources)?;
         let constants = self.shade_constants();
         self.engine.host().try_submit_timed(|commands| {
@@ -254,23 +226,10 @@ impl<'a> SceneRenderer<'a> {
         self.ensure_visible()?;
         let light_sampling = self.engine.storage("light sampling", &self.sampling.lights)?;
         let light_triangles = self.engine.storage("light triangles", &self.sampling.triangles)?;
-        let [position, normal, base_color, specular, layers @ ..] = self.g_buffer.sampled();
-        let buffers = [&self.light_buffer, &self.vertex_buffer, &light_sampling, &light_triangles];
-        let resources: Vec<_> = buffers
-            .into_iter()
-            .map(|buffer| Resource::buffer(buffer.handle()))
-            .chain([
-                position,
-                normal,
-                base_color,
-                specular,
-                Resource::StorageImage { view: self.g_buffer.radiance.view() },
-                self.engine.light_textures(),
-                Resource::buffer(self.shape_buffer.handle()),
-            ])
-            .chain(layers)
-            .chain(self.geometry.iter().map(|buffer| Resource::buffer(buffer.handle())))
-            .collect();
+        let resources = self.bound_to(
+            &REFERENCE,
+            &[("light_sampling", &light_sampling), ("light_triangles", &light_triangles)],
+        );
         let pass = self.engine.pass(
             &REFERENCE,
             &[(SHADOWS, reference.shadows.into()), (COUPLED, reference.coupled.into())],
@@ -373,22 +332,42 @@ impl<'a> SceneRenderer<'a> {
         Ok(())
     }
 
+    /// What a kernel is bound to, by the names of its bindings: buffers of its own, what is in the G-buffer, of
+    /// lights and of the scene. What frames of ours lack is the buffer of lights.
+    fn bound_to(&self, kernel: &Kernel, own: &[(&str, &Buffer)]) -> Vec<Resource> {
+        let of = |binding: &Binding| {
+            let buffer = |buffer: &Buffer| Resource::buffer(buffer.handle());
+            if let Some((_, found)) = own.iter().find(|(name, _)| *name == binding.name) {
+                return buffer(found);
+            }
+            if let Some(image) = self.g_buffer.bound_at(binding) {
+                return image;
+            }
+            match binding.name {
+                "table_image" => self.engine.table(),
+                "light_textures" => self.engine.light_textures(),
+                "light_vertices" => buffer(&self.vertex_buffer),
+                "shapes" => buffer(&self.shape_buffer),
+                name => match GEOMETRY.iter().position(|known| *known == name) {
+                    Some(index) => buffer(&self.geometry[index]),
+                    None => buffer(&self.light_buffer),
+                },
+            }
+        };
+        kernel.bindings().iter().map(of).collect()
+    }
+
     /// What a pass reads that is for surfaces with these effects.
     fn shade_resources(&self, surfaces: Effects) -> ShadeResources {
-        let [position, normal, base_color, specular, coat, sheen, anisotropy, film, transmitted] =
-            self.g_buffer.sampled();
+        let lets_through = surfaces.contains(Effects::TRANSMISSION);
         ShadeResources {
             table: self.engine.table(),
             lights: Resource::buffer(self.light_buffer.handle()),
             light_vertices: Resource::buffer(self.vertex_buffer.handle()),
-            position,
-            normal,
-            base_color: if surfaces.contains(Effects::TRANSMISSION) { transmitted } else { base_color },
-            specular: Some(specular),
-            coat: Some(coat),
-            sheen: Some(sheen),
-            anisotropy: Some(anisotropy),
-            film: Some(film),
+            planes: Planes::from_fn(|plane| match plane {
+                Plane::BaseColor if lets_through => Some(self.g_buffer.read_transmitted()),
+                _ => Some(self.g_buffer.read(plane)),
+            }),
             radiance: Resource::StorageImage { view: self.g_buffer.radiance.view() },
             light_textures: Some(self.engine.light_textures()),
             shapes: Some(Resource::buffer(self.shape_buffer.handle())),

@@ -22,19 +22,11 @@ layout(constant_id = 19) const uint VIEW = 0u;
 // Lights are picked for no shadow ray
 const int SHADOW_RAYS = 0;
 
-#define LIGHTS_BINDING 1
-#define G_BUFFER_BINDING 3
+#include "bindings.glsl"
+// What no frame of these has: stencils
+#undef STENCIL_BINDING
 #define G_BUFFER_LAYOUT LAYOUT
-#define RADIANCE_BINDING 7
 #define RADIANCE_ACCESS writeonly
-#define LIGHT_TEXTURES_BINDING 8
-#define SHAPES_BINDING 9
-#define GLOSSY_BINDING 10
-#define COAT_BINDING 11
-#define SHEEN_BINDING 12
-#define ANISOTROPY_BINDING 13
-#define FILM_BINDING 14
-#define PICKS_BINDING 15
 #define SHADE_CONSTANTS_BINDING 17
 #define LIGHT_SAMPLER_BINDING 18
 #include "effects.glsl"

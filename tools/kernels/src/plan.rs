@@ -34,7 +34,7 @@ fn specialization(kernel: &Kernel, effects: Effects, quality: Quality) -> Vec<(u
     let options = ShadeOptions { surfaces: effects, quality, ..ShadeOptions::default() };
     let lights = LightSummary { effects, ..LightSummary::default() };
     let mut values = shade_specialization(options, lights);
-    values.retain(|(id, _)| kernel.constants.contains(id));
+    values.retain(|(id, _)| kernel.constants().contains(id));
     values
 }
 
@@ -51,8 +51,8 @@ mod tests {
             ids
         };
         let points = eval(Effects::all(), Quality::default(), 65);
-        assert_eq!((points.groups, ids(&points)), ([2, 1, 1], EVAL.constants.to_vec()));
+        assert_eq!((points.groups, ids(&points)), ([2, 1, 1], EVAL.constants().to_vec()));
         let shapes = eval_shapes(Effects::all(), Quality::default(), GpuShape::ANY, 64);
-        assert_eq!((shapes.groups, ids(&shapes)), ([1, 1, 1], EVAL_SHAPES.constants.to_vec()));
+        assert_eq!((shapes.groups, ids(&shapes)), ([1, 1, 1], EVAL_SHAPES.constants().to_vec()));
     }
 }

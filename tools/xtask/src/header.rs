@@ -106,10 +106,8 @@ fn layouts() -> [Layout; 23] {
         ArealightPackedLights { lights, vertices, shapes, lights_size, vertices_size, shapes_size, summary }
         ArealightImage { view, layout, reserved }
         ArealightResources {
-            lights, light_vertices, shapes, position, normal, base_color, specular, coat, sheen, anisotropy,
-            film, light_textures,
-            radiance,
-            glossy, lobe_horizons, tile_lists, shadow_picks, stencil, light_counts,
+            lights, light_vertices, shapes, planes, light_textures, radiance, glossy, lobe_horizons, tile_lists,
+            shadow_picks, light_counts,
         }
         ArealightViewport { x, y, width, height, min_depth, max_depth }
         ArealightFrame {
@@ -119,7 +117,7 @@ fn layouts() -> [Layout; 23] {
         }
         ArealightTileMemory { size, usage, reserved }
         ArealightShadowOptions { filter, history, output }
-        ArealightShadowResources { shadow, radiance, history, motion, blocker_nodes, blocker_triangles }
+        ArealightShadowResources { shadow, radiance, history, blocker_nodes, blocker_triangles }
         ArealightShadowFrame { frame, host_set, origin_shift, reserved }
         ArealightBlockerArrays { nodes, triangles, nodes_size, triangles_size }
         ArealightTextureOptions { width, height, layers, reserved }

@@ -2,19 +2,18 @@
 
 use crate::error::Error;
 use crate::resource::Resource;
-use arealight::kernels::{Access, BindingKind, Kernel};
+use arealight::kernels::{Access, Binding, BindingKind, Kernel};
 use arealight::plan::ShadeOptions;
-use arealight::{Effects, LightSummary};
+use arealight::{Effects, LightSummary, Plane, Planes};
 use ash::vk;
 
-/// The names of bindings that options ask for, in the manifest.
-pub(super) const STENCIL: &str = "g_stencil";
+/// The names of bindings that options ask for.
 pub(super) const LIGHT_COUNTS: &str = "light_counts";
 /// And of those of tiles.
 pub(super) const TILE_LISTS: &str = "tile_lists";
 pub(super) const LOBE_HORIZONS: &str = "lobe_horizons";
 
-/// The names of bindings that may have nothing, in the manifest.
+/// The names of bindings that may have nothing.
 const LIGHT_TEXTURES: &str = "light_textures";
 const SHAPES: &str = "shapes";
 
@@ -29,7 +28,8 @@ pub(super) fn needed(lights: LightSummary) -> Vec<&'static str> {
 /// that is the pass's own. Optional resources may be missing; a frame that reads a missing one is refused.
 ///
 /// [`arealight::kernels::SHADE`] says for each what it holds and in which format at least.
-/// By default there is none; the pass refuses a set without the seven that are no `Option`.
+/// By default there is none; the pass refuses a set without those that are no `Option`, and without a plane
+/// that it reads.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ShadeResources {
     /// The light table, see [`crate::TableImage`].
@@ -46,24 +46,8 @@ pub struct ShadeResources {
     /// The lights' textures ([`crate::LightTextures`]), a 2D array. The caller must have uploaded every
     /// referenced layer. `None` if no frame has textured lights.
     pub light_textures: Option<Resource>,
-    /// Positions or depth, by [`ShadeOptions::from_depth`].
-    pub position: Resource,
-    /// Normal and roughness: this and the next two by [`ShadeOptions::g_buffer`].
-    pub normal: Resource,
-    /// Base colour and metalness.
-    pub base_color: Resource,
-    /// Dielectric reflectance, or the third image of another layout; none without
-    /// [`ShadeOptions::reads_specular`].
-    pub specular: Option<Resource>,
-    /// Coats: weight, roughness and normal; none without [`ShadeOptions::reads_coat`].
-    pub coat: Option<Resource>,
-    /// Sheen: colour and roughness; none without [`ShadeOptions::reads_sheen`].
-    pub sheen: Option<Resource>,
-    /// Second roughnesses: tangent, roughness along it, diffuse roughness; none without
-    /// [`ShadeOptions::reads_anisotropy`].
-    pub anisotropy: Option<Resource>,
-    /// Thin films: weight, index of refraction and thickness; none without [`ShadeOptions::reads_film`].
-    pub film: Option<Resource>,
+    /// The G-buffer: each plane that [`ShadeOptions::reads`], see [`Plane::content`].
+    pub planes: Planes<Option<Resource>>,
     /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`ShadeOptions::separate_lobes`]
     /// that of the diffuse lobe.
     pub radiance: Resource,
@@ -73,9 +57,6 @@ pub struct ShadeResources {
     /// With [`ShadeOptions::shadow_rays`], a buffer of [`crate::ShadePass::picks_size`] bytes, which the pass
     /// writes and a [`crate::ShadowPass`] reads. Else none.
     pub picks: Option<Resource>,
-    /// Stencils, in the aspect of stencils or an image of unsigned integers, for each texel of the G-buffer;
-    /// none without [`ShadeOptions::stencil`].
-    pub stencil: Option<Resource>,
     /// A buffer of [`arealight::gpu::LightCounts`]; none without [`ShadeOptions::light_counts`].
     pub light_counts: Option<Resource>,
     /// With tiles, a buffer of [`arealight::LightTable::lobe_horizons`] of the table. Else none.
@@ -86,81 +67,89 @@ pub struct ShadeResources {
 }
 
 impl ShadeResources {
-    /// The resources as the kernel's first `bindings` have them, and the bindings of those that are missing:
-    /// something stands there in their place.
+    /// What is bound by a name of the GLSL.
+    fn bound_at(&self, name: &str) -> Option<Resource> {
+        match name {
+            "table_image" => Some(self.table),
+            "lights" => Some(self.lights),
+            "light_vertices" => Some(self.light_vertices),
+            SHAPES => self.shapes,
+            LIGHT_TEXTURES => self.light_textures,
+            "radiance_image" | "unshadowed_image" => Some(self.radiance),
+            "glossy_image" => self.glossy,
+            "shadow_picks" => self.picks,
+            LIGHT_COUNTS => self.light_counts,
+            LOBE_HORIZONS => self.lobe_horizons,
+            TILE_LISTS => self.tile_lists,
+            _ => Plane::bound_at(name).and_then(|plane| self.planes[plane]),
+        }
+    }
+
+    /// What is at a binding; something that stands there in the place of what is missing, and not read.
+    pub(crate) fn at(&self, binding: &Binding) -> Resource {
+        self.bound_at(binding.name).unwrap_or(match binding.kind {
+            BindingKind::SampledImage => self.planes[Plane::BaseColor].unwrap_or_default(),
+            BindingKind::StorageImage => self.radiance,
+            BindingKind::StorageBuffer => self.lights,
+            BindingKind::FilteredImage => match self.table {
+                Resource::SampledImage { view, layout } => Resource::FilteredImage { view, layout },
+                other => other,
+            },
+        })
+    }
+
+    /// The resources as `bindings` have them, and the bindings of those that frames may need and have not.
     pub(super) fn in_order(
         &self,
         options: ShadeOptions,
         has_tiles: bool,
-        bindings: usize,
+        bindings: &[Binding],
     ) -> Result<(Vec<Resource>, Vec<&'static str>), Error> {
-        for (field, resource, is_used, option) in [
-            ("specular", self.specular, options.reads_specular(), "reads_specular"),
-            ("coat", self.coat, options.reads_coat(), "reads_coat"),
-            ("sheen", self.sheen, options.reads_sheen(), "reads_sheen"),
-            ("anisotropy", self.anisotropy, options.reads_anisotropy(), "reads_anisotropy"),
-            ("film", self.film, options.reads_film(), "reads_film"),
-            ("picks", self.picks, options.shadow_rays > 0, "shadow_rays"),
-            ("stencil", self.stencil, options.stencil, "stencil"),
-            ("light_counts", self.light_counts, options.light_counts, "light_counts"),
+        self.check_planes(|plane| options.reads(plane))?;
+        self.check_glossy(options)?;
+        for (field, resource, is_used, why) in [
+            ("picks", self.picks, options.shadow_rays > 0, "the pass uses it: see ShadeOptions::shadow_rays"),
+            (
+                LIGHT_COUNTS,
+                self.light_counts,
+                options.light_counts,
+                "the pass uses it: see ShadeOptions::light_counts",
+            ),
+            (TILE_LISTS, self.tile_lists, has_tiles, "the pass was made with tiles"),
+            (LOBE_HORIZONS, self.lobe_horizons, has_tiles, "the pass was made with tiles"),
         ] {
             if is_used && resource.is_none() {
-                let message = format!("is missing, but the pass uses it: see ShadeOptions::{option}");
+                let message = format!("is missing, but {why}");
                 return Err(Error::InvalidArgument { field, message });
             }
         }
-        let textures_place = match self.table {
-            Resource::SampledImage { view, layout } => Resource::FilteredImage { view, layout },
-            other => other,
-        };
-        let mut all = vec![
-            self.table,
-            self.lights,
-            self.light_vertices,
-            self.position,
-            self.normal,
-            self.base_color,
-            self.specular.unwrap_or(self.base_color),
-            self.radiance,
-            self.light_textures.unwrap_or(textures_place),
-            self.shapes.unwrap_or(self.lights),
-            self.glossy_image(options)?,
-            self.coat.unwrap_or(self.base_color),
-            self.sheen.unwrap_or(self.base_color),
-            self.anisotropy.unwrap_or(self.base_color),
-            self.film.unwrap_or(self.base_color),
-            self.picks.unwrap_or(self.lights),
-            self.stencil.unwrap_or(self.base_color),
-        ];
-        if has_tiles || options.light_counts {
-            all.push(self.light_counts.unwrap_or(self.lights));
-        }
-        if has_tiles {
-            for (resource, field) in [(self.tile_lists, TILE_LISTS), (self.lobe_horizons, LOBE_HORIZONS)] {
-                let message = "is missing, but the pass was made with tiles".into();
-                all.push(resource.ok_or(Error::InvalidArgument { field, message })?);
-            }
-        }
-        // A whole module has bindings that no frame of this pass uses
-        all.resize(bindings, self.lights);
-        let absent = [(LIGHT_TEXTURES, self.light_textures.is_none()), (SHAPES, self.shapes.is_none())];
-        let absent = absent.into_iter().filter_map(|(name, is_absent)| is_absent.then_some(name)).collect();
-        Ok((all, absent))
+        let all = bindings.iter().map(|binding| self.at(binding)).collect();
+        let absent = [LIGHT_TEXTURES, SHAPES].into_iter().filter(|name| self.bound_at(name).is_none());
+        Ok((all, absent.collect()))
     }
 
-    /// What is bound for the glossy lobe's radiance: where there is one image, that again.
-    fn glossy_image(&self, options: ShadeOptions) -> Result<Resource, Error> {
-        let wrong = |message: &str| Error::InvalidArgument { field: "glossy", message: message.into() };
-        match (options.separate_lobes, self.glossy) {
-            (false, _) => Ok(self.radiance),
-            (true, None) => {
-                Err(wrong("is missing, but the pass stores the lobes' radiance to an image each"))
+    /// Refuses a G-buffer without a plane that is read.
+    pub(crate) fn check_planes(&self, reads: impl Fn(Plane) -> bool) -> Result<(), Error> {
+        match self.planes.iter().find(|(plane, resource)| resource.is_none() && reads(*plane)) {
+            None => Ok(()),
+            Some((plane, _)) => {
+                let message = "is missing, but the pass reads it: see ShadeOptions::reads".into();
+                Err(Error::InvalidArgument { field: plane.name(), message })
             }
-            (true, Some(glossy)) if glossy.view() == self.radiance.view() => {
-                Err(wrong("is the image of `radiance`; each lobe's radiance needs its own"))
-            }
-            (true, Some(glossy)) => Ok(glossy),
         }
+    }
+
+    /// What is bound for the glossy lobe's radiance is an image of its own, where there is one.
+    fn check_glossy(&self, options: ShadeOptions) -> Result<(), Error> {
+        let message = match self.glossy {
+            _ if !options.separate_lobes => return Ok(()),
+            None => "is missing, but the pass stores the lobes' radiance to an image each",
+            Some(glossy) if glossy.view() == self.radiance.view() => {
+                "is the image of `radiance`; each lobe's radiance needs its own"
+            }
+            Some(_) => return Ok(()),
+        };
+        Err(Error::InvalidArgument { field: "glossy", message: message.into() })
     }
 }
 
@@ -168,7 +157,7 @@ impl ShadeResources {
 /// they were found; the pass makes no barrier for host resources.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ResourceAccess {
-    /// The binding's name in the manifest.
+    /// The binding's name in the GLSL.
     pub name: &'static str,
     /// The stage that uses it.
     pub stage: vk::PipelineStageFlags,
@@ -181,7 +170,7 @@ pub struct ResourceAccess {
 
 /// How `kernel` uses each of its bindings.
 pub(crate) fn accesses_of(kernel: &Kernel) -> Vec<ResourceAccess> {
-    let used = kernel.bindings.iter().filter(|binding| binding.access != Access::None);
+    let used = kernel.bindings().iter().filter(|binding| binding.access != Access::None);
     let accesses = used.map(|binding| ResourceAccess {
         name: binding.name,
         stage: vk::PipelineStageFlags::COMPUTE_SHADER,

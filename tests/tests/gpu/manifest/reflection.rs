@@ -85,8 +85,13 @@ pub fn bound_variables(module: &Module) -> BTreeMap<u32, &Instruction> {
         .collect()
 }
 
-/// The kind and access that a variable's type and decorations say.
-pub fn reflected(module: &Module, variable: &Instruction) -> (BindingKind, Access) {
+/// What the GLSL calls a binding, and the kind and access that its type and decorations say.
+pub fn reflected(module: &Module, variable: &Instruction) -> (String, BindingKind, Access) {
+    let (kind, access) = kind_and_access(module, variable);
+    (binding_name(module, variable), kind, access)
+}
+
+fn kind_and_access(module: &Module, variable: &Instruction) -> (BindingKind, Access) {
     let kind = pointee(module, variable);
     let id = variable.result_id.expect("a variable has an id");
     if kind.class.opcode == Op::TypeSampledImage {
@@ -119,7 +124,7 @@ pub fn reflected(module: &Module, variable: &Instruction) -> (BindingKind, Acces
 }
 
 /// What the GLSL calls a binding: an image by its variable, a buffer by its block's only member.
-pub fn binding_name(module: &Module, variable: &Instruction) -> String {
+fn binding_name(module: &Module, variable: &Instruction) -> String {
     let kind = pointee(module, variable);
     if matches!(kind.class.opcode, Op::TypeImage | Op::TypeSampledImage) {
         return name(module, variable.result_id.expect("a variable has an id"));

@@ -1,16 +1,13 @@
 //! Every structure that the CPU writes has the same offsets and sizes in Rust and in the modules.
 
-use super::reflection::{
-    bound_variables, decoration, definition, literal, member_decorations, member_name, module, offsets,
-    pointee,
-};
+use super::reflection::{bound_variables, decoration, literal, member_name, module, offsets, pointee};
 use arealight::gpu;
 use arealight::kernels;
 use arealight::pyramid::MOST_TAPS;
 use arealight_tests::kernel::BLOCKERS;
 use arealight_tool_kernels as tool;
-use rspirv::dr::{Module, Operand};
-use rspirv::spirv::{Decoration, Op, StorageClass};
+use rspirv::dr::Module;
+use rspirv::spirv::Decoration;
 use std::mem::offset_of;
 
 macro_rules! layout {
@@ -325,39 +322,11 @@ fn array_strides_are_the_sizes_in_rust() {
         (&tool::kernels::VISIBILITY, "textures", size_of::<tool::gpu::GpuTexture>()),
     ] {
         let module = module(kernel);
-        let number =
-            kernel.bindings.iter().position(|b| b.name == buffer).expect("the manifest has it") as u32;
+        let number = kernel.bindings().iter().find(|b| b.name == buffer).expect("the kernel has it").number;
         let block = pointee(&module, bound_variables(&module)[&number]);
         assert_eq!(member_name(&module, block.result_id.unwrap(), 0), buffer);
         let array = literal(&block.operands[0]);
         let stride = literal(&decoration(&module, array, Decoration::ArrayStride).expect("an array")[0]);
         assert_eq!(stride as usize, size, "{buffer}");
-    }
-}
-
-#[test]
-fn push_constants_have_the_size_in_the_manifest() {
-    for kernel in kernels::ALL.into_iter().chain(tool::kernels::ALL) {
-        let module = module(kernel);
-        let block = module
-            .types_global_values
-            .iter()
-            .find(|i| {
-                i.class.opcode == Op::Variable
-                    && i.operands[0] == Operand::StorageClass(StorageClass::PushConstant)
-            })
-            .map(|variable| pointee(&module, variable))
-            .expect("every kernel has push constants");
-        let id = block.result_id.unwrap();
-        let last = member_decorations(&module, id, Decoration::Offset);
-        let (member, offset) = last.iter().next_back().unwrap();
-        // Every last member is of 32-bit scalars
-        let kind = definition(&module, literal(&block.operands[*member as usize]));
-        let scalars = match kind.class.opcode {
-            Op::TypeInt | Op::TypeFloat => 1,
-            Op::TypeVector => literal(&kind.operands[1]),
-            other => panic!("{}: {other:?}", kernel.name),
-        };
-        assert_eq!(literal(&offset[0]) + 4 * scalars, kernel.push_constant_size, "{}", kernel.name);
     }
 }

@@ -44,11 +44,12 @@ struct Limit {
 fn limits(device: &PhysicalDeviceLimits) -> [Limit; 5] {
     let all = || kernels::ALL.into_iter().chain(arealight_tool_kernels::kernels::ALL);
     let most = |kinds: &[BindingKind]| {
-        let count = |kernel: &Kernel| kernel.bindings.iter().filter(|one| kinds.contains(&one.kind)).count();
+        let count =
+            |kernel: &Kernel| kernel.bindings().iter().filter(|one| kinds.contains(&one.kind)).count();
         all().map(count).max().unwrap_or(0) as u32
     };
-    let group = all().map(|kernel| kernel.local_size.iter().product()).max();
-    let constants = all().map(|kernel| kernel.push_constant_size).max();
+    let group = all().map(|kernel| kernel.local_size().iter().product()).max();
+    let constants = all().map(Kernel::push_constant_size).max();
     let limit = |name, needed, offered| Limit { name, needed, offered };
     [
         limit(

@@ -66,7 +66,7 @@ pub struct ComputeShader {
     pub specialization: Vec<(u32, u32)>,
     /// Kind and number of descriptors of each binding of set 0, in order. Combined image samplers have an
     /// immutable sampler: trilinear, clamped to the edge.
-    pub bindings: Vec<(vk::DescriptorType, u32)>,
+    pub bindings: Vec<(u32, vk::DescriptorType, u32)>,
     /// Size of the push constants in bytes.
     pub push_constant_size: u32,
 }
@@ -261,10 +261,9 @@ impl<'a> Made<'a> {
         // SAFETY: The device is alive; so for every call of this function, whose infos outlive them.
         self.sampler = unsafe { self.device.create_sampler(&info, None) }.named("vkCreateSampler")?;
 
-        let count = |&(_, count): &(vk::DescriptorType, u32)| count as usize;
+        let count = |&(_, _, count): &(u32, vk::DescriptorType, u32)| count as usize;
         let samplers = vec![self.sampler; shader.bindings.iter().map(count).max().unwrap_or(0)];
-        let binding = |(number, binding): (u32, &(vk::DescriptorType, u32))| {
-            let (kind, count) = *binding;
+        let binding = |&(number, kind, count): &(u32, vk::DescriptorType, u32)| {
             let layout = vk::DescriptorSetLayoutBinding::default()
                 .binding(number)
                 .descriptor_type(kind)
@@ -277,7 +276,7 @@ impl<'a> Made<'a> {
                 _ => layout,
             }
         };
-        let bindings: Vec<_> = (0..).zip(&shader.bindings).map(binding).collect();
+        let bindings: Vec<_> = shader.bindings.iter().map(binding).collect();
         let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
         // SAFETY: as above.
         self.set_layout = unsafe { self.device.create_descriptor_set_layout(&info, None) }

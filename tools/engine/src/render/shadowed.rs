@@ -30,16 +30,15 @@ pub struct ShadowedView {
     blockers: [Buffer; 2],
 }
 
-/// A kernel of another's that shades with shadows. Its bindings are the lights and their vertices, the
-/// G-buffer's position, normal, base colour and reflectance, the radiance that it adds to or multiplies, and
-/// [`arealight::Blockers`]' nodes and triangles; its push constants are [`ShadeConstants`].
+/// A kernel of another's that shades with shadows. Its bindings have the names of ours; its push constants are
+/// [`ShadeConstants`].
 #[derive(Clone, Copy)]
 pub struct OtherShadows<'a> {
     /// The kernel.
     pub kernel: &'static Kernel,
     /// Its specialisation constants.
     pub specialization: &'a [(u32, u32)],
-    /// A storage buffer of its own, in the binding after them.
+    /// A storage buffer of its own, at `depths`.
     pub buffer: Option<&'a Buffer>,
     /// Invocations along x and y; none: the view's pixels.
     pub items: Option<[u32; 2]>,
@@ -172,7 +171,6 @@ impl SceneRenderer<'_> {
             shadow: Resource::StorageImage { view: view.shadows.view() },
             radiance: Some(Resource::StorageImage { view: self.g_buffer.radiance.view() }),
             history: Some(Resource::buffer(view.history.handle())),
-            motion: None,
             blockers: Some(BlockerResources {
                 nodes: Resource::buffer(view.blockers[0].handle()),
                 triangles: Resource::buffer(view.blockers[1].handle()),
@@ -278,19 +276,10 @@ impl SceneRenderer<'_> {
         seed: u32,
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let [position, normal, base_color, specular, ..] = self.g_buffer.sampled();
-        let mut resources = vec![
-            Resource::buffer(self.light_buffer.handle()),
-            Resource::buffer(self.vertex_buffer.handle()),
-            position,
-            normal,
-            base_color,
-            specular,
-            Resource::StorageImage { view: self.g_buffer.radiance.view() },
-            Resource::buffer(view.blockers[0].handle()),
-            Resource::buffer(view.blockers[1].handle()),
-        ];
-        resources.extend(other.buffer.map(|buffer| Resource::buffer(buffer.handle())));
+        let [nodes, triangles] = &view.blockers;
+        let depths = other.buffer.unwrap_or(nodes);
+        let own = [("nodes", nodes), ("blocker_triangles", triangles), ("depths", depths)];
+        let resources = self.bound_to(other.kernel, &own);
         let pass = self.engine.pass(other.kernel, other.specialization, &resources)?;
         let items = other.items.map_or(self.items(), |[width, height]| [width, height, 1]);
         let constants = ShadeConstants { seed, ..self.shade_constants() };

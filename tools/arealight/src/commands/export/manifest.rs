@@ -107,18 +107,18 @@ fn memory() -> Value {
 }
 
 fn of_kernel(kernel: &Kernel) -> Value {
-    let bindings = kernel.bindings.iter().zip(0u32..).map(|(one, number)| binding(one, number));
-    let constants = kernel.constants.iter().map(|id| (constant_name(*id).to_owned(), json!(id)));
+    let bindings = kernel.bindings().iter().map(binding);
+    let constants = kernel.constants().iter().map(|id| (constant_name(*id).to_owned(), json!(id)));
     json!({
         "spirv": format!("spirv/{}.spv", kernel.name),
-        "local_size": kernel.local_size,
-        "push_constant_bytes": kernel.push_constant_size,
+        "local_size": kernel.local_size(),
+        "push_constant_bytes": kernel.push_constant_size(),
         "bindings": bindings.collect::<Vec<_>>(),
         "specialization_constants": constants.collect::<Map<_, _>>(),
     })
 }
 
-fn binding(binding: &Binding, number: u32) -> Value {
+fn binding(binding: &Binding) -> Value {
     let kind = match binding.kind {
         BindingKind::SampledImage => "sampled image",
         BindingKind::FilteredImage => "combined image sampler: trilinear, clamped to the edge",
@@ -133,7 +133,7 @@ fn binding(binding: &Binding, number: u32) -> Value {
     };
     json!({
         "set": 0,
-        "binding": number,
+        "binding": binding.number,
         "name": binding.name,
         "kind": kind,
         "access": access,
@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn every_constant_of_a_kernel_has_a_name() {
         for kernel in kernels::ALL {
-            for id in kernel.constants {
+            for id in kernel.constants() {
                 assert_ne!(constant_name(*id), "unnamed", "constant {id} of {}", kernel.name);
             }
         }
