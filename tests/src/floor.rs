@@ -149,7 +149,6 @@ impl<'a> Floor<'a> {
     ) -> Vec<Vec4> {
         let (host, table) = (self.engine.host(), LightTable::ggx());
         let every_frame = TileOptions { least_quads: 0, ..TileOptions::default() };
-        self.radiance.upload(&vec![BEFORE.to_array(); pixels().count()], Usage::COMPUTE_WRITE).unwrap();
         // SAFETY: Host::submit waits, and everything here is dropped before the engine.
         unsafe {
             let (tiled, table_size) = (tiles.then_some(every_frame), table.size());
@@ -164,14 +163,23 @@ impl<'a> Floor<'a> {
             let frame = ShadeFrame { tile_lists, ..*frame };
             if descriptors == Descriptors::Pushed {
                 let bound = Bound::Pushed { resources: &resources, host_set: None };
-                host.submit(|commands| pass.record(commands, bound, &frame).unwrap()).unwrap();
+                self.picture_after(|commands| pass.record(commands, bound, &frame).unwrap())
             } else {
                 let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
                 let set = pool.allocate(pass.set_layout()).unwrap();
                 pass.write_set(set, &resources).unwrap();
-                host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
+                self.picture_after(|commands| pass.record(commands, set, &frame).unwrap())
             }
         }
+    }
+
+    /// What the image of radiance holds after these commands, over [`BEFORE`].
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn picture_after(&self, record: impl FnOnce(vk::CommandBuffer)) -> Vec<Vec4> {
+        self.radiance.upload(&vec![BEFORE.to_array(); pixels().count()], Usage::COMPUTE_WRITE).unwrap();
+        self.engine.host().submit(record).unwrap();
         let found: Vec<[f32; 4]> = self.radiance.download(Usage::COMPUTE_WRITE).unwrap();
         found.into_iter().map(Vec4::from_array).collect()
     }

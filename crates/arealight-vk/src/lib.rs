@@ -8,41 +8,43 @@
 //! The repository's `docs/embed-rust.md` goes through each step, and `examples/rust` is a whole engine.
 //! Vulkan 1.1 without any optional feature or extension is enough.
 //!
+//! With the feature `gpu-allocator`, [`AreaLights`] owns all that shading needs, and takes memory by that
+//! crate:
+//!
+//! ```no_run
+//! # #[cfg(feature = "gpu-allocator")]
+//! # mod example {
+//! use arealight_vk::{AreaLights, AreaLightsInfo, ShadeFrame, ShadeResources, arealight::Light, ash::vk};
+//! use glam::DVec3;
+//!
+//! /// A frame of lights in the world, over a G-buffer whose positions are in the world too.
+//! ///
+//! /// # Safety
+//! /// As [`AreaLights::shade`].
+//! unsafe fn frame(area_lights: &mut AreaLights, commands: vk::CommandBuffer, place: usize, lights: &[Light],
+//!     view: &ShadeFrame, images: &ShadeResources) -> Result<(), arealight_vk::Error> {
+//!     unsafe { area_lights.shade(commands, place, lights, DVec3::ZERO, view, images) }
+//! }
+//! # }
+//! ```
+//!
+//! Below it is the recorder, which owns nothing of the host's:
+//!
 //! | step | by |
 //! |---|---|
 //! | from your handles | [`Context::new`], [`Context::with_pipeline_cache`] |
 //! | a pass for your G-buffer | [`ShadePass::new`]; for many lights with [`ShadePassInfo::tiles`] |
-//! | the table, in memory of yours | `arealight::LightTable::ggx`, [`TableImage`] |
+//! | the table, in memory of yours | [`arealight::LightTable::ggx`], [`TableImage`] |
 //! | your images and buffers | [`ShadeResources`], [`ShadePass::write_set`] |
 //! | your barriers | [`ShadePass::accesses`] |
 //! | a frame | [`arealight::PackedLights`], [`ShadeFrame`], [`ShadePass::record`] |
 //! | images on lights, shadows | [`LightTextures`], [`ShadowPass`] |
 //!
-//! The features: `gpu-allocator` lets the recorder take memory by that crate.
-//!
 //! Every `unsafe` function says what it trusts you with: that handles belong together, that they outlive what
 //! is made of them, and that commands are being recorded.
-//!
-//! ```no_run
-//! use arealight_vk::{ash, ash::vk, Context, ShadeFrame, ShadePass, ShadeResources, StencilTest};
-//! use arealight::{plan::ShadeOptions, PackedLights};
-//!
-//! # unsafe fn frame(instance: &ash::Instance, physical_device: vk::PhysicalDevice, device: &ash::Device,
-//! #     command_buffer: vk::CommandBuffer, set: vk::DescriptorSet, resources: &ShadeResources,
-//! #     lights: &[arealight::Light], camera: glam::DVec3)
-//! #     -> Result<(), arealight_vk::Error> {
-//! // Once
-//! let context = unsafe { Context::new(instance, physical_device, device) }?;
-//! let shade = unsafe { ShadePass::new(&context, ShadeOptions::default()) }?;
-//! // When lights change: pack them relative to an origin near the camera, and upload
-//! let packed = PackedLights::new(lights, camera)?;
-//! // Each frame
-//! unsafe { shade.write_set(set, resources) }?;
-//! let frame = ShadeFrame { size: [1920, 1080], lights: packed.summary(), ..ShadeFrame::default() };
-//! unsafe { shade.record(command_buffer, set, &frame) }?;
-//! # Ok(()) }
-//! ```
 
+#[cfg(feature = "gpu-allocator")]
+mod area_lights;
 mod context;
 mod debug_names;
 mod error;
@@ -65,12 +67,16 @@ mod tiles;
 mod view;
 mod written_sets;
 
+#[cfg(feature = "gpu-allocator")]
+pub use area_lights::{AreaLights, AreaLightsInfo};
 pub use arealight;
 pub use ash;
 pub use context::Context;
 pub use error::Error;
 pub use formats::ShadeFormats;
 pub use frame::{ShadeFrame, StencilTest, Viewport};
+#[cfg(feature = "gpu-allocator")]
+pub use gpu_allocator;
 pub use layouts::{Descriptors, filtered_image_sampler};
 pub use light_textures::{LightTextures, TextureUpdate};
 pub use pass::ComputePass;
@@ -96,5 +102,7 @@ mod tests {
         is_shared::<ShadowPass>();
         is_shared::<TableImage>();
         is_shared::<LightTextures>();
+        #[cfg(feature = "gpu-allocator")]
+        is_shared::<AreaLights>();
     }
 }

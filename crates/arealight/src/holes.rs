@@ -4,7 +4,7 @@
 //! of both. What the two edges of a bridge add to a sum over edges cancels but for rounding, wherever it is
 //! cut: so all that takes any outline takes this one, and the light is one record with one radiance.
 
-use crate::light::LightFault;
+use crate::light_fault::LightFault;
 use crate::light_shape::FLAT;
 use crate::{Light, LightShape};
 use glam::{DVec2, DVec3};

@@ -1,6 +1,6 @@
 //! The kernels, and what their SPIR-V says of them: bindings, constants, group size.
 
-use crate::plan::RadianceFormat;
+use crate::output::RadianceFormat;
 use reflection::Reflection;
 use std::sync::OnceLock;
 

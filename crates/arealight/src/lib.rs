@@ -47,6 +47,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`light`] | lights, of which a host has one list |
+//! | [`light_fault`] | what is wrong with a light |
 //! | [`light_shape`] | what shines: polygons, meshes, disks, spheres, tubes |
 //! | [`holes`] | polygons with holes |
 //! | [`mesh`] | several flat faces that are one light |
@@ -73,9 +74,11 @@ pub mod gpu;
 pub mod holes;
 pub mod kernels;
 pub mod light;
+pub mod light_fault;
 pub mod light_shape;
 pub mod light_texture;
 pub mod mesh;
+mod output;
 pub mod packed_lights;
 pub mod plan;
 pub mod planes;
@@ -83,6 +86,7 @@ pub mod pyramid;
 pub mod quality;
 pub mod reach;
 pub mod table;
+mod texture_error;
 pub mod texture_part;
 pub mod tiles;
 
@@ -94,7 +98,9 @@ pub use effects::Effects;
 /// agree.
 pub use glam;
 #[doc(inline)]
-pub use light::{Light, LightError, LightFault};
+pub use light::Light;
+#[doc(inline)]
+pub use light_fault::{LightError, LightFault};
 #[doc(inline)]
 pub use light_shape::{LightShape, TubeEnds};
 #[doc(inline)]
@@ -110,7 +116,9 @@ pub use quality::{Footprint, FormFactor, Horizon, Lobes, Quality, SpecularLobes}
 #[doc(inline)]
 pub use table::{LightTable, TableDescription, TableError, TableSample};
 #[doc(inline)]
-pub use texture_part::{TextureError, TexturePart, Wrap};
+pub use texture_error::TextureError;
+#[doc(inline)]
+pub use texture_part::{TexturePart, Wrap};
 #[doc(inline)]
 pub use tiles::TileClass;
 

@@ -2,7 +2,7 @@
 
 use crate::Light;
 use crate::gpu::{GpuLight, GpuShape};
-use crate::light::LightFault;
+use crate::light_fault::LightFault;
 use crate::mesh::area_of;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;

@@ -1,7 +1,7 @@
 //! Textured lights: a layer of the light textures, mapped onto a polygon or disk.
 
 use crate::LightShape;
-use crate::light::LightFault;
+use crate::light_fault::LightFault;
 use glam::{DMat2, DVec2, DVec3};
 
 /// An image that multiplies a light's radiance.

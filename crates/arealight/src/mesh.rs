@@ -7,13 +7,13 @@
 //! hides of itself is added all the same.
 
 use crate::LightShape;
-use crate::light::LightFault;
+use crate::light_fault::LightFault;
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
 impl LightShape {
     /// The most vertices of a face: what float32 counts.
-    pub const MAX_FACE: u32 = 1 << 24;
+    pub const MAX_FACE: u32 = crate::light_fault::MAX_FACE;
 
     /// The triangles of a mesh, each a face: `triangles` are indices into `positions`, three a triangle,
     /// counter-clockwise from the front. Those without an area are left out. Coplanar neighbours cost less as

@@ -1,7 +1,7 @@
 //! Lights as the GPU reads them.
 
 use crate::gpu::{GpuLight, GpuShape};
-use crate::light::{LightError, LightFault};
+use crate::light_fault::{LightError, LightFault};
 use crate::light_texture::TextureMap;
 use crate::mesh::area_of;
 use crate::{Effects, Light, LightShape};
@@ -80,7 +80,7 @@ impl PackedLights {
                 packed.shape_order.push(index as u32);
                 light.pack_shape(origin).map(|shape| packed.shapes.push(shape))
             };
-            pushed.map_err(|fault| fault.of(index, light))?;
+            pushed.map_err(|fault| fault.of(index, &light.name))?;
             packed.quad_count += u32::from(rank(effects[index]) == QUAD);
             packed.effects |= effects[index];
         }
@@ -219,7 +219,7 @@ fn check_rows(lights: &[Light]) -> Result<(), LightError> {
     for (index, light) in lights.iter().enumerate() {
         count += light.shape.vertices().len() + light.shape.faces().len() + TEXTURE_ROWS;
         if u32::try_from(count).is_err() {
-            return Err(LightFault::TooManyVertices { count }.of(index, light));
+            return Err(LightFault::TooManyVertices { count }.of(index, &light.name));
         }
     }
     Ok(())

@@ -23,7 +23,7 @@
 //! Tested against a direct Gaussian in float64 (`crates/arealight-oracle/tests`,
 //! `tests/tests/gpu/pyramid.rs`).
 
-use crate::texture_part::TextureError;
+use crate::texture_error::{self, TextureError};
 
 /// The standard deviation of the last level, in texture coordinates: the square root of 1/8. Lookups that ask
 /// for more get this.
@@ -61,9 +61,9 @@ pub const MOST_TAPS: usize = 6;
 
 impl PyramidSize {
     /// The smallest width and height.
-    pub const SMALLEST: u32 = 64;
+    pub const SMALLEST: u32 = texture_error::SMALLEST;
     /// The largest.
-    pub const LARGEST: u32 = 4096;
+    pub const LARGEST: u32 = texture_error::LARGEST;
 
     /// A size, checked.
     ///

@@ -2,6 +2,7 @@
 
 use crate::gpu::TextureLoadConstants;
 use crate::pyramid::PyramidSize;
+use crate::texture_error::{self, TextureError};
 use glam::{DVec2, IVec2};
 
 /// What texture coordinates beyond 0 to 1 read.
@@ -38,66 +39,16 @@ impl Default for TexturePart {
     }
 }
 
-/// Why light textures cannot be made, or a part of an image not be loaded into one.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum TextureError {
-    /// A size that no light texture has.
-    #[error(
-        "light texture size {width} x {height}: each must be a power of two from {} to {}",
-        PyramidSize::SMALLEST,
-        PyramidSize::LARGEST
-    )]
-    LayerSize {
-        /// The width given.
-        width: u32,
-        /// The height given.
-        height: u32,
-    },
-    /// The image has no texels, or too many.
-    #[error(
-        "source of {width} x {height} texels: each must be from 1 to {}; scale it down",
-        TexturePart::LARGEST_SOURCE
-    )]
-    Source {
-        /// The image's width.
-        width: u32,
-        /// The image's height.
-        height: u32,
-    },
-    /// The part begins nowhere, or too far away to be resolved.
-    #[error("low: {low} must be within {} repeats of the image", TexturePart::FARTHEST)]
-    Low {
-        /// The coordinates given.
-        low: DVec2,
-    },
-    /// The part is empty, or so many repeats that reading it would take seconds.
-    #[error(
-        "size: {size} of {width} x {height} texels must be positive and cover at most {} texels a side; load \
-        fewer \
-         repeats",
-        TexturePart::MOST_TEXELS
-    )]
-    Size {
-        /// The size given.
-        size: DVec2,
-        /// The image's width.
-        width: u32,
-        /// The image's height.
-        height: u32,
-    },
-}
-
 /// Nearer to a whole texel than this is on it.
 const WHOLE: f64 = 1e-6;
 
 impl TexturePart {
     /// The largest width and height of an image.
-    pub const LARGEST_SOURCE: u32 = 4096;
+    pub const LARGEST_SOURCE: u32 = texture_error::LARGEST_SOURCE;
     /// The most repeats that `low` may be away.
-    pub const FARTHEST: f64 = 4096.0;
+    pub const FARTHEST: f64 = texture_error::FARTHEST;
     /// The most texels of the image, repeats included, that a part may cover along an axis.
-    pub const MOST_TEXELS: f64 = 16384.0;
+    pub const MOST_TEXELS: f64 = texture_error::MOST_TEXELS;
 
     /// The push constants that load the part of an image of `source` texels into `layer` of textures of
     /// `size`. `decode` tells that the image holds sRGB in a format that does not decode by itself.

@@ -6,7 +6,7 @@
 //! their lights need. docs/tiles.md has measurements.
 
 use crate::LightSummary;
-use crate::plan::Output;
+use crate::output::Output;
 
 /// Width and height of a tile in pixels.
 pub const SIDE: u32 = 8;

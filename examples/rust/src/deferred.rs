@@ -2,41 +2,26 @@
 
 use crate::draw::Users;
 use crate::g_buffer::GBuffer;
-use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Memory, Semaphores};
+use crate::gpu::{Buffer, FRAMES_IN_FLIGHT, Frames, Gpu, Semaphores};
 use crate::picture::{Picture, Readback};
 use crate::{Result, scene};
-use arealight::plan::{Output, ShadeOptions, TileOptions};
-use arealight::{PackedLights, Plane, SpecularLobes};
-use arealight_vk::{
-    Context, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources, TableFormat, TableImage,
-};
+use arealight_vk::arealight::Plane;
+use arealight_vk::arealight::plan::{Output, ShadeOptions, TileOptions};
+use arealight_vk::{AreaLights, AreaLightsInfo, Resource, ShadeFrame, ShadeResources, TableFormat};
 use ash::vk;
 
-/// Bytes of a buffer that changes with the frame: more than the scene's vertices and lights need.
+/// Bytes of the scene's vertices, and more.
 const ROOM: usize = 1 << 16;
 
-/// The engine, with images of one size. Fields are dropped from the top: frames in flight end first, memory
-/// goes after what lies in it.
+/// The engine. Fields are dropped from the top: frames in flight end first.
 pub struct Deferred<'a> {
     frames: Frames<'a>,
-    places: Vec<Place<'a>>,
-    tile_lists: Vec<Buffer<'a>>,
+    vertices: Vec<Buffer<'a>>,
     /// What a frame draws to, and leaves the radiance in, in `GENERAL` layout; another after
     /// [`Deferred::resize`].
     pub g_buffer: GBuffer<'a>,
-    shade: ShadePass,
-    _sets: DescriptorPool<'a>,
-    table: (TableImage, Memory<'a>),
-    lobe_horizons: Buffer<'a>,
+    area_lights: AreaLights,
     gpu: &'a Gpu<'a>,
-}
-
-/// What each frame in flight has for itself, because it is written anew for every frame.
-struct Place<'a> {
-    set: vk::DescriptorSet,
-    vertices: Buffer<'a>,
-    lights: Buffer<'a>,
-    light_vertices: Buffer<'a>,
 }
 
 impl<'a> Deferred<'a> {
@@ -45,115 +30,38 @@ impl<'a> Deferred<'a> {
     /// # Errors
     /// Where the device refuses.
     pub fn new(gpu: &'a Gpu<'a>, size: [u32; 2]) -> Result<Self> {
-        // doc: context
-        // SAFETY: the handles, which stay yours, belong together, and outlive what is made of the context.
-        let context = unsafe { Context::new(gpu.instance, gpu.physical_device, &gpu.device) }?;
-        // doc end
-
-        // doc: pass
-        // Make the pass for the way in which your surfaces are stored; it takes every kind of
-        // light. It adds to the emission that was drawn
+        // doc: new
+        // How your surfaces are stored and shaded. It adds to the emission that was drawn
         let options = ShadeOptions { from_depth: true, output: Output::Add, ..ShadeOptions::default() };
         GBuffer::formats().check(options)?; // says which image has another format than it should
-        let table = arealight::LightTable::ggx();
-        // With tiles, for scenes of many lights. (TileOptions::default() classifies no frame of two.)
-        let tiles = TileOptions { least_quads: 0, ..TileOptions::default() };
-        let info = ShadePassInfo { tiles: Some(tiles), table_size: table.size(), ..options.into() };
-        // SAFETY: the pass is dropped after the frames, and before the device.
-        let shade = unsafe { ShadePass::new(&context, info) }?;
+        let tiles = Some(TileOptions { least_quads: 0, ..TileOptions::default() });
+        let info = AreaLightsInfo {
+            options,
+            tiles,
+            table_format: TableFormat::Rgba16Float, // half the memory
+            frames_in_flight: FRAMES_IN_FLIGHT,
+            ..AreaLightsInfo::default()
+        };
+        // SAFETY: your handles belong together; it is dropped after the frames, and before the device.
+        let area_lights = unsafe {
+            AreaLights::new(gpu.instance, gpu.physical_device, &gpu.device, gpu.allocator()?, &info)
+        }?;
         // doc end
-
-        // doc: table
-        // Give the light table memory, and fill it
-        let mut frames = Frames::new(gpu)?;
-        // SAFETY: the image goes after the frames, and its memory, which was made for it, after the image.
-        let mut image = unsafe { TableImage::new(&context, &table, TableFormat::Rgba16Float) }?;
-        let memory = gpu.device_memory(image.memory_requirements())?;
-        // SAFETY: as above.
-        unsafe { image.bind_memory(memory.raw, 0) }?;
-        let staging = gpu.filled_buffer(vk::BufferUsageFlags::TRANSFER_SRC, &image.bytes(&table))?;
-        // SAFETY: the staging buffer holds the table until the commands are done.
-        frames.run(|commands| unsafe { image.record_upload(commands, staging.raw, 0) })?;
-        // doc end
-
-        // doc: tiles
-        // With tiles: upload where the horizons of the table's lobes are
-        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let lobe_horizons =
-            gpu.filled_buffer(storage, bytemuck::cast_slice(&table.lobe_horizons(SpecularLobes::One)))?;
-        // doc end
-
-        // doc: sets
-        // Allocate a descriptor set from a pool of yours for each frame in flight
-        let pool = DescriptorPool::new(gpu, &shade.pool_sizes(FRAMES_IN_FLIGHT as u32))?;
-        let mut places = vec![];
-        for _ in 0..FRAMES_IN_FLIGHT {
-            // SAFETY: the layout is the pass's.
-            let set = unsafe { pool.allocate(shade.set_layout()) }?;
-            places.push(Place {
-                set,
-                vertices: gpu.buffer(vk::BufferUsageFlags::VERTEX_BUFFER, ROOM)?,
-                lights: gpu.buffer(storage, ROOM)?,
-                light_vertices: gpu.buffer(storage, ROOM)?,
-            });
-        }
-        // doc end
-
-        // doc: barriers
-        // Place your barriers by what the pass says of itself: here, in the render pass that
-        // draws the G-buffer
-        let g_buffer = GBuffer::new(gpu, size, shade.stages_and_access())?;
-        // doc end
-        let (table, tile_lists) = ((image, memory), vec![]);
-        let mut engine =
-            Self { frames, places, tile_lists, g_buffer, shade, _sets: pool, table, lobe_horizons, gpu };
-        engine.write_sets()?;
-        Ok(engine)
+        // Your barriers: here in the render pass that draws the G-buffer
+        let g_buffer = GBuffer::new(gpu, size, area_lights.stages_and_access())?;
+        let buffer = |_| gpu.buffer(vk::BufferUsageFlags::VERTEX_BUFFER, ROOM);
+        let vertices = (0..FRAMES_IN_FLIGHT).map(buffer).collect::<Result<_>>()?;
+        Ok(Self { frames: Frames::new(gpu)?, vertices, g_buffer, area_lights, gpu })
     }
 
-    /// Points the sets at the images and buffers; no frame is in flight.
-    fn write_sets(&mut self) -> Result<()> {
-        // doc: write
-        // With tiles: a buffer for their lists, which the pass alone writes, for each frame in flight
-        let needed = self.shade.tile_memory(self.g_buffer.size).ok_or("the pass has tiles")?;
-        let lists = |_| self.gpu.buffer(needed.usage, needed.size as usize);
-        self.tile_lists = (0..FRAMES_IN_FLIGHT).map(lists).collect::<Result<_>>()?;
-        // Point the sets at your images and buffers. What your frames never read is left out
-        for (place, lists) in self.places.iter().zip(&self.tile_lists) {
-            let resources = ShadeResources {
-                table: self.table.0.resource(),
-                lights: Resource::buffer(place.lights.raw),
-                light_vertices: Resource::buffer(place.light_vertices.raw),
-                planes: [
-                    (Plane::Position, Resource::depth(self.g_buffer.depth.view)),
-                    (Plane::Normal, Resource::sampled(self.g_buffer.normal_roughness.view)),
-                    (Plane::BaseColor, Resource::sampled(self.g_buffer.base_color_metalness.view)),
-                ]
-                .into(),
-                radiance: Resource::stored(self.g_buffer.radiance.view),
-                lobe_horizons: Some(Resource::buffer(self.lobe_horizons.raw)), // with tiles, as the next
-                tile_lists: Some(Resource::buffer(lists.raw)),
-                ..ShadeResources::default()
-            };
-            // SAFETY: no pending frame uses the set, and the resources outlive its next use.
-            unsafe { self.shade.write_set(place.set, &resources) }?;
-        }
-        // doc end
-        Ok(())
-    }
-
-    /// Goes on with pictures of another size. Waits for the frames in flight.
+    /// Goes on with pictures of another size. Waits for the frames in flight, which use the images.
     ///
     /// # Errors
     /// Where the device refuses.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
-        // doc: resize
-        // Make what has a size anew when no frame uses it, and point the sets at it: the pass
-        // itself knows no size
         self.frames.wait()?;
         self.g_buffer = GBuffer::new(self.gpu, size, self.g_buffer.users)?;
-        self.write_sets()
-        // doc end
+        Ok(())
     }
 
     /// Draws and shades the scene as it is after `seconds`, and records `then` behind it, which is given the
@@ -166,33 +74,35 @@ impl<'a> Deferred<'a> {
         seconds: f64,
         then: impl FnOnce(usize, vk::CommandBuffer) -> Result<Semaphores>,
     ) -> Result<()> {
-        let Self { frames, places, tile_lists, g_buffer, shade, .. } = self;
-        frames.submit_with(|index, commands| {
-            let place = &places[index];
+        let Self { frames, vertices, g_buffer, area_lights, .. } = self;
+        frames.submit_with(|place, commands| {
+            let (camera, triangles) = (scene::camera(g_buffer.size), scene::vertices(seconds));
+            vertices[place].write(bytemuck::cast_slice(&triangles))?;
+            // SAFETY: the commands are being recorded, and the frame before at this place is done.
+            unsafe { g_buffer.draw.record(commands, &camera, vertices[place].raw, triangles.len(), None) };
             // doc: frame
-            // Write what is new in this frame: no other frame reads this place's buffers
-            let camera = scene::camera(g_buffer.size);
-            let packed = PackedLights::new(&scene::lights(seconds), camera.position.as_dvec3())?;
-            place.lights.write(bytemuck::cast_slice(&packed.lights))?;
-            place.light_vertices.write(bytemuck::cast_slice(&packed.vertices))?;
-            let vertices = scene::vertices(seconds);
-            place.vertices.write(bytemuck::cast_slice(&vertices))?;
-
-            // Draw the G-buffer, and shade it: all is relative to the camera, which is at zero
-            let frame = ShadeFrame {
+            // Your images, of any size. What your options don't read is left out
+            let images = ShadeResources {
+                planes: [
+                    (Plane::Position, Resource::depth(g_buffer.depth.view)),
+                    (Plane::Normal, Resource::sampled(g_buffer.normal_roughness.view)),
+                    (Plane::BaseColor, Resource::sampled(g_buffer.base_color_metalness.view)),
+                ]
+                .into(),
+                radiance: Resource::stored(g_buffer.radiance.view),
+                ..ShadeResources::default()
+            };
+            let view = ShadeFrame {
                 size: g_buffer.size,
-                position_from_clip: Some(camera.clip_from_view.inverse()),
-                lights: packed.summary(),
-                tile_lists: Some(Resource::buffer(tile_lists[index].raw)),
+                position_from_clip: Some(camera.clip_from_view.inverse()), // jitter included
                 ..ShadeFrame::default()
             };
-            // SAFETY: the commands are being recorded; buffers and sets are this place's.
-            unsafe {
-                g_buffer.draw.record(commands, &camera, place.vertices.raw, vertices.len(), None);
-                shade.record(commands, place.set, &frame)?;
-            }
+            // Lights in the world, in float64. This engine's positions are relative to its camera
+            let (lights, origin) = (scene::lights(seconds), camera.position.as_dvec3());
+            // SAFETY: as above; the images outlive the frame.
+            unsafe { area_lights.shade(commands, place, &lights, origin, &view, &images) }?;
             // doc end
-            then(index, commands)
+            then(place, commands)
         })
     }
 
@@ -202,11 +112,7 @@ impl<'a> Deferred<'a> {
     /// Where the device refuses.
     pub fn picture(&mut self) -> Result<Picture> {
         let (image, layout) = (&self.g_buffer.radiance, vk::ImageLayout::GENERAL);
-        Readback::new(self.gpu, self.g_buffer.size)?.read(
-            &mut self.frames,
-            image,
-            layout,
-            Users::COMPUTE_WRITE,
-        )
+        let readback = Readback::new(self.gpu, self.g_buffer.size)?;
+        readback.read(&mut self.frames, image, layout, Users::COMPUTE_WRITE)
     }
 }

@@ -2,8 +2,11 @@
 //! optional is enabled: Vulkan 1.1 as every device has it.
 
 use crate::Result;
+use arealight_vk::gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use arealight_vk::gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
 use ash::vk;
 use std::ffi::CStr;
+use std::sync::{Arc, Mutex};
 
 /// How many frames the CPU may be ahead of the GPU.
 pub const FRAMES_IN_FLIGHT: usize = 2;
@@ -112,6 +115,21 @@ impl<'a> Gpu<'a> {
             let queue = device.get_device_queue(family, 0);
             Ok(Self { instance, physical_device, device, queue, family })
         }
+    }
+
+    /// An allocator for what owns memory of its own.
+    ///
+    /// # Errors
+    /// Where the device has no memory that it could manage.
+    pub fn allocator(&self) -> Result<Arc<Mutex<Allocator>>> {
+        Ok(Arc::new(Mutex::new(Allocator::new(&AllocatorCreateDesc {
+            instance: self.instance.clone(),
+            device: self.device.clone(),
+            physical_device: self.physical_device,
+            debug_settings: AllocatorDebugSettings::default(),
+            buffer_device_address: false,
+            allocation_sizes: AllocationSizes::default(),
+        })?)))
     }
 
     /// Memory of a type that `requirements` allow and that has `flags`. A real engine takes many resources

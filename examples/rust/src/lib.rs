@@ -1,6 +1,7 @@
 //! Two small engines that embed Arealight, each with a device, memory and frames in flight of its own:
 //!
-//! - [`deferred`] draws a G-buffer, and records the recorder's pass (`arealight-vk`) behind it;
+//! - [`deferred`] draws a G-buffer, and has it shaded by `AreaLights` (`arealight-vk`); [`recorded`] is the
+//!   same engine by the recorder, which owns nothing;
 //! - [`forward`] includes the GLSL library in its fragment shader, and needs the recorder for the table's
 //!   image alone.
 //!
@@ -15,17 +16,17 @@
 //! cargo run --release -p arealight-examples --features window --bin deferred
 //! ```
 //!
-//! Both make the same picture. What is theirs alone is in [`deferred`] and [`forward`]; what every Vulkan
-//! engine has is in [`gpu`] and [`draw`].
+//! Both make the same picture. What is theirs alone is in [`deferred`], [`recorded`] and [`forward`]; what
+//! every Vulkan engine has is in [`gpu`] and [`draw`].
 
 pub mod command_line;
 pub mod deferred;
 pub mod draw;
-pub mod first_light;
 pub mod forward;
 pub mod g_buffer;
 pub mod gpu;
 pub mod picture;
+pub mod recorded;
 pub mod scene;
 pub mod swapchain;
 pub mod tone_map;

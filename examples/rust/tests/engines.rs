@@ -5,6 +5,7 @@ use arealight_examples::deferred::Deferred;
 use arealight_examples::forward::Forward;
 use arealight_examples::gpu::{FRAMES_IN_FLIGHT, Frames, Gpu, Semaphores};
 use arealight_examples::picture::Picture;
+use arealight_examples::recorded::Recorded;
 use ash::vk;
 use std::process::Command;
 
@@ -39,6 +40,12 @@ fn both_engines_make_the_same_picture_whatever_they_drew_before() {
     let apart = difference(&first, &by_forward);
     println!("largest difference: {apart:e}");
     assert!(apart <= TOLERANCE, "{apart:e} apart");
+    // The recorder alone makes the same bits, and another picture of another moment
+    let mut recorded = Recorded::new(&gpu, SIZE).unwrap();
+    for (seconds, is_same) in [(0.4, false), (0.5, true)] {
+        recorded.frame(seconds).unwrap();
+        assert_eq!(recorded.picture().unwrap() == first, is_same);
+    }
 
     // There is something to see: panels, what they light, and what they do not
     let brightest = first.pixels.iter().map(|pixel| pixel.max_element()).fold(0.0, f32::max);

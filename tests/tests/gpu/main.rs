@@ -5,6 +5,7 @@
 
 mod anisotropy;
 mod arcs;
+mod area_lights;
 mod bits;
 mod blockers;
 mod c_api;

@@ -1,6 +1,6 @@
 //! What one module makes of images of several kinds: a word or two for each that differs.
 
-use crate::plan::RadianceFormat;
+use crate::output::RadianceFormat;
 use std::collections::HashSet;
 
 // Instructions (the SPIR-V specification, 3.42)

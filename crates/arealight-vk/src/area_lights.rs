@@ -1,0 +1,412 @@
+//! All that shading by area lights needs, in one object that owns it.
+
+mod place;
+mod textures;
+
+use crate::context::Context;
+use crate::error::{Error, VulkanCall};
+use crate::frame::ShadeFrame;
+use crate::light_textures::TextureUpdate;
+use crate::memory::{Buffer, Memory, SharedAllocator};
+use crate::resource::Resource;
+use crate::shade::{Bound, ShadePass, ShadePassInfo, ShadeResources};
+use crate::shadows::{ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo};
+use crate::table_image::{TableFormat, TableImage};
+use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
+use arealight::{Blockers, Light, LightTable, PackedLights, PyramidSize};
+use ash::vk;
+use bytemuck::cast_slice;
+use glam::{DVec3, Vec3};
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::Allocator;
+use place::Place;
+use std::sync::{Arc, Mutex};
+use textures::Textures;
+
+/// What [`AreaLights`] are made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AreaLightsInfo {
+    /// How the host's surfaces are stored and shaded. With [`ShadeOptions::shadow_rays`] there are shadows,
+    /// of [`AreaLights::set_blockers`].
+    pub options: ShadeOptions,
+    /// Lists of lights for tiles of the picture, for scenes of many lights.
+    pub tiles: Option<TileOptions>,
+    /// How shadow rays are filtered.
+    pub shadow_filter: ShadowFilter,
+    /// How many frames the host may have recorded that are not done yet.
+    pub frames_in_flight: usize,
+    /// The table of lobes.
+    pub table: LightTable,
+    /// Its format on the GPU.
+    pub table_format: TableFormat,
+    /// Size and number of the layers for images on lights; none where no light has one.
+    pub textures: Option<(PyramidSize, u32)>,
+}
+
+impl Default for AreaLightsInfo {
+    /// [`ShadeOptions::default`] with the built-in table, two frames in flight, and nothing else.
+    fn default() -> Self {
+        Self {
+            options: ShadeOptions::default(),
+            tiles: None,
+            shadow_filter: ShadowFilter::default(),
+            frames_in_flight: 2,
+            table: LightTable::ggx(),
+            table_format: TableFormat::default(),
+            textures: None,
+        }
+    }
+}
+
+/// The passes with all that they need: table, buffers of lights, descriptor sets, lists of tiles, light
+/// textures, and what shadows take. Three calls make a picture: [`AreaLights::new`], then
+/// [`AreaLights::shade`] in each frame, and at the end the drop.
+///
+/// One is for one view: each frame of it is one call. The recorder below ([`ShadePass`], [`ShadowPass`]) is
+/// for hosts that own all this themselves.
+///
+/// # Frames in flight
+/// Every frame has a *place*, from 0 to before [`AreaLightsInfo::frames_in_flight`]. What a place has is
+/// written when its next frame is recorded, so that the host waits for the one before, as it does for its own
+/// command buffer. What is recorded is submitted to one queue, in the order in which it was recorded. Buffers
+/// grow when a frame has more lights or pixels than the one before at its place.
+pub struct AreaLights {
+    shade: ShadePass,
+    shadow: Option<ShadowPass>,
+    places: Vec<Place>,
+    textures: Option<Textures>,
+    table: (TableImage, Memory),
+    lobe_horizons: Buffer,
+    /// What has to be copied by the next frame, until it was recorded.
+    new_table: Option<Arc<Buffer>>,
+    blockers: Option<Arc<[Buffer; 2]>>,
+    pool: vk::DescriptorPool,
+    options: ShadeOptions,
+    seed: u32,
+    allocator: SharedAllocator,
+    context: Context,
+}
+
+impl std::fmt::Debug for AreaLights {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("AreaLights").field("options", &self.options).finish_non_exhaustive()
+    }
+}
+
+impl AreaLights {
+    /// Makes all that does not depend on the size of pictures.
+    ///
+    /// # Safety
+    /// - As [`Context::new`]. The allocator is of the same device.
+    /// - It is dropped when no recorded commands are pending, before the device is destroyed.
+    ///
+    /// # Errors
+    /// As [`Context::new`], [`ShadePass::new`], [`ShadowPass::new`] and
+    /// [`LightTextures::new`](crate::LightTextures::new); [`Error::InvalidArgument`] where there is no frame
+    /// in flight; [`Error::Vulkan`] where memory is out.
+    pub unsafe fn new(
+        instance: &ash::Instance,
+        physical_device: vk::PhysicalDevice,
+        device: &ash::Device,
+        allocator: Arc<Mutex<Allocator>>,
+        info: &AreaLightsInfo,
+    ) -> Result<Self, Error> {
+        // SAFETY: the same contract.
+        unsafe { Self::of_context(&Context::new(instance, physical_device, device)?, allocator, info) }
+    }
+
+    /// As [`AreaLights::new`], on a context with a pipeline cache, names for debuggers or whole modules.
+    ///
+    /// # Safety
+    /// As [`AreaLights::new`].
+    ///
+    /// # Errors
+    /// As [`AreaLights::new`].
+    pub unsafe fn of_context(
+        context: &Context,
+        allocator: Arc<Mutex<Allocator>>,
+        info: &AreaLightsInfo,
+    ) -> Result<Self, Error> {
+        let (table, frames) = (&info.table, info.frames_in_flight);
+        if frames == 0 {
+            let message = "is 0, but a frame that is recorded is in flight".into();
+            return Err(Error::InvalidArgument { field: "frames_in_flight", message });
+        }
+        let allocator = SharedAllocator(allocator);
+        // SAFETY: the same contract, throughout.
+        unsafe {
+            let (shade, shadow) = passes(context, info)?;
+            let mut image = TableImage::new(context, table, info.table_format)?;
+            let memory = allocator.keep(image.allocate(&mut allocator.lock())?);
+            let texels = mapped(context, &allocator, &image.bytes(table))?;
+            let horizons = table.lobe_horizons(info.options.quality.specular_lobes);
+            let lobe_horizons = mapped(context, &allocator, cast_slice(&horizons))?;
+            let textures = info.textures.map(|size| Textures::new(context, &allocator, size, frames));
+            // From here on dropping it destroys what it has
+            let mut made = Self {
+                shade,
+                shadow,
+                places: vec![],
+                textures: textures.transpose()?,
+                table: (image, memory),
+                lobe_horizons,
+                new_table: Some(Arc::new(texels)),
+                blockers: None,
+                pool: vk::DescriptorPool::null(),
+                options: info.options,
+                seed: 0,
+                allocator,
+                context: context.clone(),
+            };
+            made.make_places(frames)?;
+            if made.shadow.is_some()
+                && let Ok(nothing) = Blockers::new(&[])
+            {
+                made.set_blockers(&nothing)?;
+            }
+            Ok(made)
+        }
+    }
+
+    /// # Safety
+    /// As [`AreaLights::new`].
+    unsafe fn make_places(&mut self, frames: usize) -> Result<(), Error> {
+        let count = frames as u32;
+        let mut layouts = vec![self.shade.set_layout()];
+        let mut sizes = self.shade.pool_sizes(count);
+        if let Some(shadow) = &self.shadow {
+            layouts.push(shadow.set_layout());
+            sizes.extend(shadow.pool_sizes(count));
+        }
+        let info =
+            vk::DescriptorPoolCreateInfo::default().max_sets(count * layouts.len() as u32).pool_sizes(&sizes);
+        let device = &self.context.device;
+        // SAFETY: the device is valid by the contract of Context::new; the layouts are the passes'.
+        unsafe {
+            self.pool = device.create_descriptor_pool(&info, None).call("vkCreateDescriptorPool")?;
+            for _ in 0..frames {
+                let info =
+                    vk::DescriptorSetAllocateInfo::default().descriptor_pool(self.pool).set_layouts(&layouts);
+                let sets = device.allocate_descriptor_sets(&info).call("vkAllocateDescriptorSets")?;
+                self.places.push(Place::new(&self.context, &self.allocator, sets)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// The pass that shades: for [`ShadePass::prepare`].
+    pub fn shade_pass(&self) -> &ShadePass {
+        &self.shade
+    }
+
+    /// In which stages, and how, the host's images are used: what the host's barriers around
+    /// [`AreaLights::shade`] are made of.
+    pub fn stages_and_access(&self) -> (vk::PipelineStageFlags, vk::AccessFlags) {
+        self.shade.stages_and_access()
+    }
+
+    /// What blocks shadow rays from the next frame on, relative to the origin of that frame: by default
+    /// nothing.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] where there are no shadows: see [`ShadeOptions::shadow_rays`];
+    /// [`Error::Vulkan`] where memory is out.
+    pub fn set_blockers(&mut self, blockers: &Blockers) -> Result<(), Error> {
+        if self.shadow.is_none() {
+            let message = "are given, but ShadeOptions::shadow_rays is 0".into();
+            return Err(Error::InvalidArgument { field: "blockers", message });
+        }
+        let arrays: [&[u8]; 2] = [cast_slice(&blockers.nodes), cast_slice(&blockers.triangles)];
+        // SAFETY: places that use the buffers keep them.
+        let buffer = |bytes| unsafe { mapped(&self.context, &self.allocator, bytes) };
+        self.blockers = Some(Arc::new([buffer(arrays[0])?, buffer(arrays[1])?]));
+        Ok(())
+    }
+
+    /// Records that images are loaded into layers of the light textures, for the frame at `place`, before
+    /// [`AreaLights::shade`] and once at most. Each update comes with its image, a
+    /// [`Resource::SampledImage`]; [`TextureUpdate::source_set`] does not count.
+    ///
+    /// # Safety
+    /// As [`LightTextures::record_update`](crate::LightTextures::record_update), but for its sets; the frame
+    /// before at this place is done.
+    ///
+    /// # Errors
+    /// As [`LightTextures::record_update`](crate::LightTextures::record_update); [`Error::InvalidArgument`]
+    /// where there are no light textures, or no such place.
+    pub unsafe fn load_textures(
+        &mut self,
+        command_buffer: vk::CommandBuffer,
+        place: usize,
+        updates: &[(Resource, TextureUpdate)],
+    ) -> Result<(), Error> {
+        let Some(textures) = &mut self.textures else {
+            let message = "is none, but a texture is loaded: see AreaLightsInfo::textures".into();
+            return Err(Error::InvalidArgument { field: "textures", message });
+        };
+        // SAFETY: the same contract.
+        unsafe { textures.load(command_buffer, place, updates) }
+    }
+
+    /// Records a frame, between the host's barriers: see [`AreaLights::stages_and_access`].
+    ///
+    /// `lights` are in the world, and the positions of the G-buffer relative to `origin`, a place near the
+    /// camera or the world's own. Of `view`, sizes, camera and matrix count; lights, seed and lists of tiles
+    /// are ours. `g_buffer` has the host's images, among them that of the radiance; table, lights and buffers
+    /// are ours. They may be others, and of another size, in each frame.
+    ///
+    /// # Safety
+    /// - `command_buffer` is recording, outside a render pass, on a queue with compute; it is submitted
+    ///   unless an error is returned.
+    /// - The frame before at this place is done.
+    /// - The images are valid, of the view's size at least, and stay so until the frame is done.
+    ///
+    /// # Errors
+    /// [`Error::Light`] names the light that is wrong, [`Error::InvalidArgument`] the field or resource;
+    /// [`Error::Vulkan`] where memory is out or a pipeline cannot be made. Then the commands are not to be
+    /// submitted.
+    pub unsafe fn shade(
+        &mut self,
+        command_buffer: vk::CommandBuffer,
+        place: usize,
+        lights: &[Light],
+        origin: DVec3,
+        view: &ShadeFrame,
+        g_buffer: &ShadeResources,
+    ) -> Result<(), Error> {
+        // SAFETY: the same contract.
+        let recorded = unsafe { self.record(command_buffer, place, (lights, origin), view, g_buffer) };
+        if let Some(textures) = &mut self.textures {
+            textures.settle(recorded.is_ok());
+        }
+        recorded?;
+        self.new_table = None;
+        self.seed = self.seed.wrapping_add(1);
+        Ok(())
+    }
+
+    /// # Safety
+    /// As [`AreaLights::shade`].
+    unsafe fn record(
+        &mut self,
+        command_buffer: vk::CommandBuffer,
+        place: usize,
+        (lights, origin): (&[Light], DVec3),
+        view: &ShadeFrame,
+        g_buffer: &ShadeResources,
+    ) -> Result<(), Error> {
+        // Check, and make what is missing
+        if let Some(textures) = &self.textures {
+            textures.check_lights(lights)?;
+        }
+        let packed = PackedLights::new(lights, origin)?;
+        let place = place_of(&mut self.places, place)?;
+        let (context, allocator) = (&self.context, &self.allocator);
+        // SAFETY: the frame before at this place is done, so nothing uses what it has.
+        unsafe {
+            place.write_lights(context, allocator, &packed)?;
+            place.fit(context, allocator, (&self.shade, self.options), view.size)?;
+        }
+        let resources = ShadeResources {
+            table: self.table.0.resource(),
+            light_textures: self.textures.as_ref().map(Textures::resource),
+            lobe_horizons: Some(Resource::buffer(self.lobe_horizons.raw)),
+            ..place.resources(g_buffer)
+        };
+        let frame = ShadeFrame {
+            lights: packed.summary(),
+            tile_lists: resources.tile_lists,
+            seed: self.seed,
+            ..*view
+        };
+        // SAFETY: as above; the resources are the host's, and ours.
+        unsafe { self.shade.write_set(place.sets[0], &resources) }?;
+        self.shade.prepare(&frame)?;
+        let shadows = match (&self.shadow, &self.blockers) {
+            (Some(shadow), Some(blockers)) => {
+                let of_shadows = place.shadow_resources(g_buffer, blockers);
+                // SAFETY: as above.
+                unsafe { shadow.write_set(place.sets[1], &resources, &of_shadows) }?;
+                shadow.prepare(frame.lights)?;
+                Some((shadow, of_shadows))
+            }
+            _ => None,
+        };
+
+        // Record what the frame reads, and the passes
+        // SAFETY: the same contract.
+        unsafe {
+            place.staging.clone_from(&self.new_table);
+            if let Some(staging) = &self.new_table {
+                self.table.0.record_upload(command_buffer, staging.raw, 0);
+            }
+            if let Some(textures) = &mut self.textures {
+                textures.clear_once(command_buffer);
+            }
+            place.record_layouts(context, command_buffer);
+            self.shade.record(command_buffer, place.sets[0], &frame)?;
+            if let Some((shadow, of_shadows)) = shadows {
+                let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
+                let (read, write) = (vk::AccessFlags::SHADER_READ, vk::AccessFlags::SHADER_WRITE);
+                context.record_barrier(command_buffer, (compute, write), (compute, read | write));
+                let frame = ShadowFrame { shade: &frame, origin_shift: Vec3::ZERO };
+                shadow.record(command_buffer, Bound::Set(place.sets[1]), &of_shadows, &frame)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Drop for AreaLights {
+    fn drop(&mut self) {
+        // SAFETY: by the contract of AreaLights::new no recorded use is pending and the device is alive; a
+        // null pool is ignored.
+        unsafe { self.context.device.destroy_descriptor_pool(self.pool, None) };
+    }
+}
+
+/// The passes: with shadows that which shades overwrites an image of its own, and the other has the host's
+/// output.
+///
+/// # Safety
+/// As [`AreaLights::new`].
+unsafe fn passes(context: &Context, info: &AreaLightsInfo) -> Result<(ShadePass, Option<ShadowPass>), Error> {
+    let (with_shadows, host) = (info.options.shadow_rays > 0, info.options);
+    let options = if with_shadows { ShadeOptions { output: Output::Overwrite, ..host } } else { host };
+    let (tiles, table_size) = (info.tiles, info.table.size());
+    // SAFETY: the same contract; the modules are the kernels'.
+    unsafe {
+        let shade = ShadePass::new(context, ShadePassInfo { tiles, table_size, ..options.into() })?;
+        if !with_shadows {
+            return Ok((shade, None));
+        }
+        let shadows =
+            ShadowOptions { filter: info.shadow_filter, history: ShadowHistory::Off, output: host.output };
+        let shadow =
+            ShadowPass::new(context, ShadowPassInfo { options, shadows, ..ShadowPassInfo::default() })?;
+        Ok((shade, Some(shadow)))
+    }
+}
+
+/// A place, if it is there.
+fn place_of<T>(places: &mut [T], place: usize) -> Result<&mut T, Error> {
+    let count = places.len();
+    let message = format!("{place} is not there: frames_in_flight is {count}");
+    places.get_mut(place).ok_or(Error::InvalidArgument { field: "place", message })
+}
+
+/// The least size of a buffer: a record of any kind of light.
+const LEAST: vk::DeviceSize = 64;
+
+/// A buffer of these bytes, for shaders and copies.
+///
+/// # Safety
+/// As [`Buffer::new`].
+unsafe fn mapped(context: &Context, allocator: &SharedAllocator, bytes: &[u8]) -> Result<Buffer, Error> {
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
+    let size = (bytes.len() as vk::DeviceSize).max(LEAST);
+    // SAFETY: the same contract.
+    let mut buffer = unsafe { Buffer::new(context, allocator, usage, (size, MemoryLocation::CpuToGpu)) }?;
+    buffer.write(bytes);
+    Ok(buffer)
+}

@@ -1,0 +1,182 @@
+//! What each frame in flight has for itself.
+
+use super::{LEAST, mapped};
+use crate::context::Context;
+use crate::error::Error;
+use crate::memory::{Buffer, Image, SharedAllocator, WHOLE};
+use crate::resource::Resource;
+use crate::shade::{ShadePass, ShadeResources};
+use crate::shadows::{BlockerResources, ShadowPass, ShadowResources};
+use arealight::PackedLights;
+use arealight::plan::{Output, RadianceFormat, ShadeOptions};
+use ash::vk;
+use bytemuck::cast_slice;
+use gpu_allocator::MemoryLocation;
+use std::sync::Arc;
+
+/// What a frame has that others in flight must not touch.
+pub(super) struct Place {
+    /// Of the shade pass, and of the shadow pass where there is one.
+    pub(super) sets: Vec<vk::DescriptorSet>,
+    /// What the place's frame copies the table from.
+    pub(super) staging: Option<Arc<Buffer>>,
+    blockers: Option<Arc<[Buffer; 2]>>,
+    /// Lights, vertices and shapes.
+    lights: [Buffer; 3],
+    tile_lists: Option<Buffer>,
+    shadows: Option<Shadows>,
+}
+
+/// What shadows need of a frame's size.
+struct Shadows {
+    picks: Buffer,
+    shadow: Image,
+    /// Where the radiance without shadows goes, if it may not overwrite the host's.
+    unshadowed: Option<Image>,
+}
+
+impl Place {
+    /// # Safety
+    /// It is dropped when no pending work uses it, before the device; so for all that it makes.
+    pub(super) unsafe fn new(
+        context: &Context,
+        allocator: &SharedAllocator,
+        sets: Vec<vk::DescriptorSet>,
+    ) -> Result<Self, Error> {
+        // SAFETY: the same contract.
+        let empty = || unsafe { mapped(context, allocator, &[]) };
+        let lights = [empty()?, empty()?, empty()?];
+        Ok(Self { sets, staging: None, blockers: None, lights, tile_lists: None, shadows: None })
+    }
+
+    /// Writes the lights, to larger buffers where they need them.
+    ///
+    /// # Safety
+    /// No pending work uses the place.
+    pub(super) unsafe fn write_lights(
+        &mut self,
+        context: &Context,
+        allocator: &SharedAllocator,
+        packed: &PackedLights,
+    ) -> Result<(), Error> {
+        let arrays: [&[u8]; 3] =
+            [cast_slice(&packed.lights), cast_slice(&packed.vertices), cast_slice(&packed.shapes)];
+        for (buffer, bytes) in self.lights.iter_mut().zip(arrays) {
+            if bytes.len() as vk::DeviceSize > buffer.size {
+                // Twice as much each time, so that growing lights seldom need another
+                let size = (bytes.len() as vk::DeviceSize).next_power_of_two();
+                let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+                // SAFETY: the same contract.
+                *buffer =
+                    unsafe { Buffer::new(context, allocator, usage, (size, MemoryLocation::CpuToGpu)) }?;
+            }
+            buffer.write(bytes);
+        }
+        Ok(())
+    }
+
+    /// Makes what depends on the size of the picture, where it is another.
+    ///
+    /// # Safety
+    /// As [`Place::write_lights`].
+    pub(super) unsafe fn fit(
+        &mut self,
+        context: &Context,
+        allocator: &SharedAllocator,
+        (shade, options): (&ShadePass, ShadeOptions),
+        size: [u32; 2],
+    ) -> Result<(), Error> {
+        let on_device = |usage, size: vk::DeviceSize| {
+            let what = (size.max(LEAST), MemoryLocation::GpuOnly);
+            // SAFETY: the same contract.
+            unsafe { Buffer::new(context, allocator, usage, what) }
+        };
+        if let Some(needed) = shade.tile_memory(size)
+            && self.tile_lists.as_ref().is_none_or(|lists| lists.size < needed.size)
+        {
+            self.tile_lists = Some(on_device(needed.usage, needed.size)?);
+        }
+        let is_other = self.shadows.as_ref().is_none_or(|shadows| shadows.shadow.extent != size);
+        if options.shadow_rays > 0 && is_other {
+            let format = match options.format {
+                RadianceFormat::Rgba32Float => vk::Format::R32G32B32A32_SFLOAT,
+                RadianceFormat::Rgba16Float => vk::Format::R16G16B16A16_SFLOAT,
+            };
+            // SAFETY: as above.
+            let image =
+                |format| unsafe { Image::new(context, allocator, format, size.map(|side| side.max(1))) };
+            self.shadows = Some(Shadows {
+                picks: on_device(vk::BufferUsageFlags::STORAGE_BUFFER, shade.picks_size(size))?,
+                shadow: image(ShadowPass::SHADOW_FORMAT)?,
+                unshadowed: (options.output == Output::Add).then(|| image(format)).transpose()?,
+            });
+        }
+        Ok(())
+    }
+
+    /// The host's resources of a frame, with those of the place.
+    pub(super) fn resources(&self, g_buffer: &ShadeResources) -> ShadeResources {
+        let [lights, light_vertices, shapes] =
+            self.lights.each_ref().map(|buffer| Resource::buffer(buffer.raw));
+        let unshadowed = self.shadows.as_ref().and_then(|shadows| shadows.unshadowed.as_ref());
+        ShadeResources {
+            lights,
+            light_vertices,
+            shapes: Some(shapes),
+            radiance: unshadowed.map_or(g_buffer.radiance, |image| Resource::stored(image.view)),
+            picks: self.shadows.as_ref().map(|shadows| Resource::buffer(shadows.picks.raw)),
+            tile_lists: self.tile_lists.as_ref().map(|lists| Resource::buffer(lists.raw)),
+            ..*g_buffer
+        }
+    }
+
+    /// Those of the shadow pass, which keeps the blockers.
+    pub(super) fn shadow_resources(
+        &mut self,
+        g_buffer: &ShadeResources,
+        blockers: &Arc<[Buffer; 2]>,
+    ) -> ShadowResources {
+        let [nodes, triangles] = blockers.each_ref().map(|buffer| Resource::buffer(buffer.raw));
+        self.blockers = Some(Arc::clone(blockers));
+        let shadows = self.shadows.as_ref();
+        let own = shadows.and_then(|shadows| shadows.unshadowed.as_ref());
+        ShadowResources {
+            shadow: shadows.map_or_else(Resource::default, |shadows| Resource::stored(shadows.shadow.view)),
+            radiance: own.map(|_| g_buffer.radiance),
+            history: None,
+            blockers: Some(BlockerResources { nodes, triangles }),
+        }
+    }
+
+    /// Records that the place's images get their layout: what they held is of no frame to come.
+    ///
+    /// # Safety
+    /// The command buffer is recording, outside a render pass.
+    pub(super) unsafe fn record_layouts(&self, context: &Context, command_buffer: vk::CommandBuffer) {
+        let Some(shadows) = &self.shadows else { return };
+        let barrier = |image: &Image| {
+            vk::ImageMemoryBarrier::default()
+                .image(image.raw)
+                .subresource_range(WHOLE)
+                .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                .old_layout(vk::ImageLayout::UNDEFINED)
+                .new_layout(vk::ImageLayout::GENERAL)
+                .dst_access_mask(vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE)
+        };
+        let images: Vec<_> =
+            std::iter::once(&shadows.shadow).chain(&shadows.unshadowed).map(barrier).collect();
+        // SAFETY: the same contract; the images are the place's.
+        unsafe {
+            context.device.cmd_pipeline_barrier(
+                command_buffer,
+                vk::PipelineStageFlags::TOP_OF_PIPE,
+                vk::PipelineStageFlags::COMPUTE_SHADER,
+                vk::DependencyFlags::empty(),
+                &[],
+                &[],
+                &images,
+            );
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Light textures with their memory and descriptor sets.
+
+use super::place_of;
+use crate::context::Context;
+use crate::error::{Error, VulkanCall};
+use crate::light_textures::{LightTextures, TextureUpdate};
+use crate::memory::{Memory, SharedAllocator};
+use crate::resource::Resource;
+use arealight::{Light, PyramidSize};
+use ash::vk;
+
+/// The light textures of [`super::AreaLights`].
+pub(super) struct Textures {
+    layers: LightTextures,
+    _memory: Memory,
+    context: Context,
+    level_pool: vk::DescriptorPool,
+    level_sets: Vec<vk::DescriptorSet>,
+    /// Of each place, the pool of the sets that its last update read images by.
+    source_pools: Vec<vk::DescriptorPool>,
+    cleared: Cleared,
+}
+
+/// Whether the layers were made black, which comes before all else.
+#[derive(PartialEq)]
+enum Cleared {
+    Not,
+    /// By commands that may yet be thrown away.
+    Recorded,
+    Done,
+}
+
+impl Textures {
+    /// # Safety
+    /// It is dropped when no pending work uses it, before the device.
+    pub(super) unsafe fn new(
+        context: &Context,
+        allocator: &SharedAllocator,
+        (size, count): (PyramidSize, u32),
+        frames: usize,
+    ) -> Result<Self, Error> {
+        // SAFETY: the same contract; the allocator is the device's.
+        unsafe {
+            let mut layers = LightTextures::new(context, size, count)?;
+            let memory = allocator.keep(layers.allocate(&mut allocator.lock())?);
+            // From here on dropping it destroys what it has
+            let mut made = Self {
+                layers,
+                _memory: memory,
+                context: context.clone(),
+                level_pool: vk::DescriptorPool::null(),
+                level_sets: vec![],
+                source_pools: vec![vk::DescriptorPool::null(); frames],
+                cleared: Cleared::Not,
+            };
+            let (sizes, layout) = (made.layers.level_pool_sizes(), made.layers.level_set_layout());
+            let layouts = vec![layout; made.layers.level_sets() as usize];
+            (made.level_pool, made.level_sets) = made.sets(&sizes, &layouts)?;
+            made.layers.write_level_sets(&made.level_sets)?;
+            Ok(made)
+        }
+    }
+
+    /// A pool, and all its sets.
+    fn sets(
+        &self,
+        sizes: &[vk::DescriptorPoolSize],
+        layouts: &[vk::DescriptorSetLayout],
+    ) -> Result<(vk::DescriptorPool, Vec<vk::DescriptorSet>), Error> {
+        let device = &self.context.device;
+        let info = vk::DescriptorPoolCreateInfo::default().max_sets(layouts.len() as u32).pool_sizes(sizes);
+        // SAFETY: the device is valid by the contract of Context::new; the layouts are the passes'.
+        unsafe {
+            let pool = device.create_descriptor_pool(&info, None).call("vkCreateDescriptorPool")?;
+            let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(layouts);
+            match device.allocate_descriptor_sets(&info).call("vkAllocateDescriptorSets") {
+                Ok(sets) => Ok((pool, sets)),
+                Err(error) => {
+                    device.destroy_descriptor_pool(pool, None);
+                    Err(error)
+                }
+            }
+        }
+    }
+
+    pub(super) fn resource(&self) -> Resource {
+        self.layers.resource()
+    }
+
+    pub(super) fn check_lights(&self, lights: &[Light]) -> Result<(), Error> {
+        self.layers.check_lights(lights)
+    }
+
+    /// Records that the layers become black, the first time.
+    ///
+    /// # Safety
+    /// As [`LightTextures::record_clear`].
+    pub(super) unsafe fn clear_once(&mut self, command_buffer: vk::CommandBuffer) {
+        if self.cleared == Cleared::Not {
+            // SAFETY: the same contract.
+            unsafe { self.layers.record_clear(command_buffer) };
+            self.cleared = Cleared::Recorded;
+        }
+    }
+
+    /// A frame's commands are whole, or will be thrown away.
+    pub(super) fn settle(&mut self, is_whole: bool) {
+        if self.cleared == Cleared::Recorded {
+            self.cleared = if is_whole { Cleared::Done } else { Cleared::Not };
+        }
+    }
+
+    /// # Safety
+    /// As [`super::AreaLights::load_textures`].
+    pub(super) unsafe fn load(
+        &mut self,
+        command_buffer: vk::CommandBuffer,
+        place: usize,
+        updates: &[(Resource, TextureUpdate)],
+    ) -> Result<(), Error> {
+        let before = std::mem::take(place_of(&mut self.source_pools, place)?);
+        // SAFETY: the frame before at this place is done; a null pool is ignored.
+        unsafe { self.context.device.destroy_descriptor_pool(before, None) };
+        if updates.is_empty() {
+            return Ok(());
+        }
+        let layouts = vec![self.layers.source_set_layout(); updates.len()];
+        let (pool, sets) = self.sets(&self.layers.source_pool_sizes(layouts.len() as u32), &layouts)?;
+        self.source_pools[place] = pool;
+        // SAFETY: the same contract.
+        unsafe {
+            for (set, (source, _)) in sets.iter().zip(updates) {
+                self.layers.write_source_set(*set, *source)?;
+            }
+            let updates: Vec<_> = sets
+                .into_iter()
+                .zip(updates)
+                .map(|(source_set, (_, update))| TextureUpdate { source_set, ..*update })
+                .collect();
+            self.clear_once(command_buffer);
+            let recorded = self.layers.record_update(command_buffer, &self.level_sets, &updates);
+            if recorded.is_err() {
+                self.settle(false);
+            }
+            recorded
+        }
+    }
+}
+
+impl Drop for Textures {
+    fn drop(&mut self) {
+        // SAFETY: by the contract of Textures::new; null pools are ignored.
+        unsafe {
+            for pool in self.source_pools.iter().chain([&self.level_pool]) {
+                self.context.device.destroy_descriptor_pool(*pool, None);
+            }
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! The object that owns all that shading needs: it draws what the recorder does.
+
+use arealight::plan::{Output, ShadeOptions, ShadowFilter, TileOptions};
+use arealight::{Blockers, Light, LightShape, LightTexture, Plane, PyramidSize, TexturePart};
+use arealight_tests::TestEngine;
+use arealight_tests::floor::{Floor, SIZE, image, lamps, read};
+use arealight_tests::one_pixel::{BEFORE, lamp};
+use arealight_vk::gpu_allocator::{AllocationSizes, AllocatorDebugSettings, vulkan};
+use arealight_vk::{
+    AreaLights, AreaLightsInfo, Descriptors, Error, ShadeFrame, ShadeResources, TextureUpdate,
+};
+use ash::vk;
+use glam::{DVec2, DVec3, Vec3, Vec4};
+use std::sync::{Arc, Mutex};
+
+/// Does something with area lights on the engine's device, and sees that all memory was given back.
+fn with_area_lights(engine: &TestEngine, info: &AreaLightsInfo, act: impl FnOnce(&mut AreaLights)) {
+    let host = engine.host();
+    let allocator = vulkan::Allocator::new(&vulkan::AllocatorCreateDesc {
+        instance: host.instance().clone(),
+        device: host.device().clone(),
+        physical_device: host.physical_device(),
+        debug_settings: AllocatorDebugSettings::default(),
+        buffer_device_address: false,
+        allocation_sizes: AllocationSizes::default(),
+    });
+    let allocator = Arc::new(Mutex::new(allocator.unwrap()));
+    // SAFETY: The handles belong together, and submissions are waited for.
+    let made = unsafe {
+        let (instance, device) = (host.instance(), host.device());
+        AreaLights::new(instance, host.physical_device(), device, Arc::clone(&allocator), info)
+    };
+    act(&mut made.unwrap());
+    let left = allocator.lock().unwrap().generate_report().total_allocated_bytes;
+    assert_eq!(left, 0, "bytes were not given back");
+}
+
+/// The picture of a floor under its lights, of the frame at a place.
+fn picture(
+    area_lights: &mut AreaLights,
+    place: usize,
+    (floor, lights): (&Floor<'_>, &[Light]),
+    view: &ShadeFrame,
+) -> Vec<Vec4> {
+    // The object has a table and buffers of its own
+    let nothing = ShadeResources::default();
+    let ShadeResources { table, lights: records, light_vertices, .. } = nothing;
+    let g_buffer =
+        ShadeResources { table, lights: records, light_vertices, shapes: None, ..floor.resources() };
+    floor.picture_after(|commands| {
+        // SAFETY: The frame is waited for, and the images outlive it.
+        unsafe { area_lights.shade(commands, place, lights, DVec3::ZERO, view, &g_buffer) }.unwrap();
+    })
+}
+
+fn many() -> Vec<Light> {
+    lamps().into_iter().cycle().take(30).collect()
+}
+
+#[test]
+fn frames_of_any_lights_and_sizes_are_those_of_the_recorder() {
+    let Some(engine) = TestEngine::new() else { return };
+    let small = [SIZE[0] - 9, SIZE[1] - 10];
+    for tiles in [None, Some(TileOptions { least_quads: 0, ..TileOptions::default() })] {
+        let options = ShadeOptions::default();
+        let info = AreaLightsInfo { options, tiles, ..AreaLightsInfo::default() };
+        with_area_lights(&engine, &info, |area_lights| {
+            let mut pictures = vec![];
+            // Each place is used again, for more lights and for fewer, and for more pixels and fewer
+            for (number, (lights, size)) in
+                [(vec![lamp()], small), (many(), SIZE), (lamps(), SIZE), (vec![], small), (lamps(), SIZE)]
+                    .into_iter()
+                    .enumerate()
+            {
+                let floor = Floor::new(&engine, &lights);
+                let view = ShadeFrame { size, ..floor.frame() };
+                let ours = picture(area_lights, number % 2, (&floor, &lights), &view);
+                let resources = floor.resources();
+                let theirs = floor.shade(options, tiles.is_some(), (&resources, &view, Descriptors::Sets));
+                assert!(ours == theirs, "frame {number}");
+                pictures.push(ours);
+            }
+            // The twin: other lights make other pictures, and the same ones the same
+            assert_eq!(pictures[2], pictures[4]);
+            for (one, other) in [(0, 1), (1, 2), (2, 3)] {
+                assert_ne!(pictures[one], pictures[other]);
+            }
+        });
+    }
+}
+
+#[test]
+fn what_blocks_darkens_and_what_does_not_changes_nothing() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (floor, lights) = (Floor::new(&engine, &[lamp()]), [lamp()]);
+    let view = floor.frame();
+    for output in [Output::Overwrite, Output::Add] {
+        let options = ShadeOptions { output, ..ShadeOptions::default() };
+        let unshadowed = floor.shade(options, false, (&floor.resources(), &view, Descriptors::Sets));
+        let info = AreaLightsInfo {
+            options: ShadeOptions { shadow_rays: 2, ..options },
+            shadow_filter: ShadowFilter::Off,
+            ..AreaLightsInfo::default()
+        };
+        with_area_lights(&engine, &info, |area_lights| {
+            let frame =
+                |area_lights: &mut AreaLights, place| picture(area_lights, place, (&floor, &lights), &view);
+            let free = frame(area_lights, 0);
+            for (ours, theirs) in free.iter().zip(&unshadowed) {
+                assert!(
+                    (*ours - *theirs).abs().max_element() <= 1e-6 * theirs.max_element(),
+                    "{ours} {theirs}"
+                );
+            }
+            // Far larger than the lamp, right above the floor
+            let corners = [[-50.0, -50.0], [50.0, -50.0], [50.0, 50.0], [-50.0, 50.0]];
+            let [a, b, c, d] = corners.map(|[x, y]| Vec3::new(x, y, 0.01));
+            area_lights.set_blockers(&Blockers::new(&[[a, b, c], [a, c, d]]).unwrap()).unwrap();
+            let dark = frame(area_lights, 1);
+            let black = if output == Output::Add { BEFORE } else { Vec4::ZERO };
+            assert!(dark.iter().all(|texel| texel.truncate() == black.truncate()), "{:?}", dark[0]);
+            area_lights.set_blockers(&Blockers::new(&[]).unwrap()).unwrap();
+            assert_eq!(frame(area_lights, 0), free);
+            // The twin: there was something to darken
+            assert!(free.iter().filter(|texel| texel.x > black.x + 0.01).count() > free.len() / 4);
+        });
+    }
+}
+
+#[test]
+fn images_on_lights_are_loaded_before_a_frame() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (format, sampled) = (vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::SAMPLED);
+    let red = image(&engine, [4; 2], format, sampled, &[[1.0_f32, 0.0, 0.0, 1.0]; 16]);
+    let uvs = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(DVec2::from_array).to_vec();
+    let LightShape::Polygon(corners) = lamp().shape else { unreachable!("a polygon") };
+    assert_eq!(corners.len(), uvs.len());
+    let light = Light { texture: Some(LightTexture { layer: 1, uvs }), ..lamp() };
+    let lights = [light];
+    let floor = Floor::new(&engine, &lights);
+    let info = AreaLightsInfo {
+        textures: Some((PyramidSize::new(64, 64).unwrap(), 2)),
+        ..AreaLightsInfo::default()
+    };
+    with_area_lights(&engine, &info, |area_lights| {
+        let update = TextureUpdate {
+            layer: 1,
+            source_set: vk::DescriptorSet::null(),
+            source_size: [4; 2],
+            part: TexturePart::default(),
+            decode_srgb: false,
+        };
+        // Black before it is loaded
+        let black = picture(area_lights, 0, (&floor, &lights), &floor.frame());
+        assert!(black.iter().all(|texel| texel.truncate() == Vec3::ZERO));
+        for place in [1, 0, 1] {
+            let images = [(read(&red), update)];
+            // SAFETY: The commands are waited for, and the image outlives them.
+            let load = |commands| unsafe { area_lights.load_textures(commands, place, &images) }.unwrap();
+            engine.host().submit(load).unwrap();
+            let lit = picture(area_lights, place, (&floor, &lights), &floor.frame());
+            assert!(lit.iter().all(|texel| texel.y == 0.0 && texel.z == 0.0));
+            assert!(lit.iter().filter(|texel| texel.x > 0.01).count() > lit.len() / 4);
+        }
+        // A layer that is not there
+        let beyond = [Light {
+            texture: lights[0].texture.clone().map(|one| LightTexture { layer: 2, ..one }),
+            ..lamp()
+        }];
+        // SAFETY: Nothing is recorded where an error is returned.
+        let error = unsafe {
+            let commands = vk::CommandBuffer::null();
+            area_lights.shade(commands, 0, &beyond, DVec3::ZERO, &floor.frame(), &floor.resources())
+        };
+        assert!(matches!(error, Err(Error::Light(_))), "{error:?}");
+    });
+}
+
+#[test]
+fn mistakes_are_named() {
+    let Some(engine) = TestEngine::new() else { return };
+    let floor = Floor::new(&engine, &[lamp()]);
+    let commands = vk::CommandBuffer::null();
+    let field = |error: Result<(), Error>| match error {
+        Err(Error::InvalidArgument { field, .. }) => field,
+        other => panic!("{other:?}"),
+    };
+    with_area_lights(&engine, &AreaLightsInfo::default(), |area_lights| {
+        // SAFETY: Nothing is recorded where an error is returned.
+        let mut shade = |place, view: &ShadeFrame, g_buffer: &ShadeResources| unsafe {
+            field(area_lights.shade(commands, place, &[lamp()], DVec3::ZERO, view, g_buffer))
+        };
+        assert_eq!(shade(2, &floor.frame(), &floor.resources()), "place");
+        assert_eq!(shade(0, &ShadeFrame { size: [0, 4], ..floor.frame() }, &floor.resources()), "size");
+        let mut without = floor.resources();
+        without.planes[Plane::Normal] = None;
+        assert_eq!(shade(0, &floor.frame(), &without), Plane::Normal.name());
+        assert_eq!(field(area_lights.set_blockers(&Blockers::new(&[]).unwrap())), "blockers");
+        // SAFETY: As above.
+        assert_eq!(field(unsafe { area_lights.load_textures(commands, 0, &[]) }), "textures");
+        // The twin: the next frame is drawn
+        let lit = picture(area_lights, 0, (&floor, &[lamp()]), &floor.frame());
+        assert!(lit.iter().any(|texel| texel.x > 0.1));
+    });
+}
