@@ -129,6 +129,8 @@ step "code in documents is that of the files" "$xtask" quotes --check
 step "the product depends on no laboratory" "$xtask" dependencies
 step "licences of dependencies" check_licences
 step "the product has few public types" "$xtask" types
+step "modules need none that needs them" "$xtask" circles
+step "lines of code, words of documents, and width" "$xtask" size
 step "lints" cargo clippy "${workspace[@]}" --all-targets --quiet -- -D warnings
 step "tests" run_tests
 step "tests that had a GPU" check_gpu_tests

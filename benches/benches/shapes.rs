@@ -1,6 +1,7 @@
 //! What disks, spheres and tubes cost, and how far off they are at that cost:
 //! `cargo bench -p arealight-benches --bench shapes`. Prints a Markdown table; `-- --save
-//! FILE` writes JSON, of which `tools/plots/plots.py shapes FILE -o FILE.svg` draws error against time of disks.
+//! FILE` writes JSON, of which `tools/plots/plots.py shapes FILE -o FILE.svg` draws error against time of
+//! disks.
 
 use arealight_benches::shape_cost::{markdown, measure};
 use arealight_benches::start::start;

@@ -223,7 +223,10 @@ pub fn run(
         let default = &timed.methods[default];
         // Without a lobe it is the other way round
         let on = if LOBES.contains(*effect) { default.ratio(clock) } else { clock.ratio(default) };
-        let calls = |named: &Named| matches!(named.method, Method::Level { effects, .. } if effects - LOBES == *effect);
+        let calls = |named: &Named| match named.method {
+            Method::Level { effects, .. } => effects - LOBES == *effect,
+            _ => false,
+        };
         // Nothing needs it in the first
         let all = workloads.iter().flat_map(|workload| &workload.methods).zip(&timed.methods);
         let mut others = all.skip(workloads[0].methods.len());

@@ -3,11 +3,11 @@
 //! reflectance.
 //!
 //! The published table itself isn't in this repository. This one was made by the method that its authors
-//! describe: at each node a lobe with three free parameters, its axis fixed at the BRDF's mean direction, which
-//! minimises the cube of the difference of densities by the simplex method of Nelder and Mead 1965. Its errors
-//! are those of the published table within 10 % ([`arealight_fit::report::PUBLISHED`]; a test compares them).
-//! Its albedos are those of our own table: the two differ by their matrices alone. The fit's code is in this
-//! repository's history: `benches/src/published.rs` at 9225346.
+//! describe: at each node a lobe with three free parameters, its axis fixed at the BRDF's mean direction,
+//! which minimises the cube of the difference of densities by the simplex method of Nelder and Mead 1965. Its
+//! errors are those of the published table within 10 % ([`arealight_fit::report::PUBLISHED`]; a test compares
+//! them). Its albedos are those of our own table: the two differ by their matrices alone. The fit's code is
+//! in this repository's history: `benches/src/published.rs` at 9225346.
 
 use arealight::LightTable;
 

@@ -131,8 +131,8 @@
 // With four by four parts of the light, a form factor and two fetches each.
 #define AREALIGHT_FOOTPRINT_SPLIT 2
 
-// Positions relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f). As the
-// next ones, an index into ArealightResources.planes.
+// Positions relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f). As
+// the next ones, an index into ArealightResources.planes.
 #define AREALIGHT_PLANE_POSITION 0
 
 // Shading normal in xyz, of any length; perceptual roughness in w (rgba16f, rgba32f for mirrors). By

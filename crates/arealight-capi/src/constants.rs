@@ -78,8 +78,8 @@ pub const AREALIGHT_FOOTPRINT_ELLIPSE: u32 = 1;
 /// With four by four parts of the light, a form factor and two fetches each.
 pub const AREALIGHT_FOOTPRINT_SPLIT: u32 = 2;
 
-/// Positions relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f). As the
-/// next ones, an index into ArealightResources.planes.
+/// Positions relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f). As
+/// the next ones, an index into ArealightResources.planes.
 pub const AREALIGHT_PLANE_POSITION: u32 = 0;
 /// Shading normal in xyz, of any length; perceptual roughness in w (rgba16f, rgba32f for mirrors). By
 /// AREALIGHT_G_BUFFER_*, as the next two.

@@ -28,7 +28,8 @@ pub enum Failure {
     /// No Vulkan, no device, a missing feature, or a device that was lost. Exit code 4.
     #[error("{0}")]
     Device(String),
-    /// No driver whose compiler can be asked, or not the version that a file is of; or no matplotlib. Exit code 6.
+    /// No driver whose compiler can be asked, or not the version that a file is of; or no matplotlib. Exit
+    /// code 6.
     #[error("{0}")]
     NoProgram(String),
     /// An output file cannot be written. Exit code 5.

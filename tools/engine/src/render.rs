@@ -332,8 +332,8 @@ impl<'a> SceneRenderer<'a> {
         Ok(())
     }
 
-    /// What a kernel is bound to, by the names of its bindings: buffers of its own, what is in the G-buffer, of
-    /// lights and of the scene. What frames of ours lack is the buffer of lights.
+    /// What a kernel is bound to, by the names of its bindings: buffers of its own, what is in the G-buffer,
+    /// of lights and of the scene. What frames of ours lack is the buffer of lights.
     fn bound_to(&self, kernel: &Kernel, own: &[(&str, &Buffer)]) -> Vec<Resource> {
         let of = |binding: &Binding| {
             let buffer = |buffer: &Buffer| Resource::buffer(buffer.handle());

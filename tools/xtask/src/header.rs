@@ -106,7 +106,8 @@ fn layouts() -> [Layout; 23] {
         ArealightPackedLights { lights, vertices, shapes, lights_size, vertices_size, shapes_size, summary }
         ArealightImage { view, layout, reserved }
         ArealightResources {
-            lights, light_vertices, shapes, planes, light_textures, radiance, glossy, lobe_horizons, tile_lists,
+            lights, light_vertices, shapes, planes, light_textures, radiance, glossy,
+            lobe_horizons, tile_lists,
             shadow_picks, light_counts,
         }
         ArealightViewport { x, y, width, height, min_depth, max_depth }

@@ -72,7 +72,8 @@ pub fn run(root: &Path) -> Result<bool, TaskError> {
     let mut wrong = metadata.too_new();
 
     // Pack all at once, since they depend on each other: cargo 1.90 or newer can. What is not committed
-    // counts too. A lock file of each package would be resolved anew, from a registry that may be out of reach
+    // counts too. A lock file of each package would be resolved anew, from a registry that may be out of
+    // reach
     let mut arguments =
         vec!["package", "--no-verify", "--allow-dirty", "--locked", "--quiet", "--exclude-lockfile"];
     for package in &published {

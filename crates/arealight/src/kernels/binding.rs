@@ -88,7 +88,8 @@ const BOUND: [(&str, &str); 19] = [
     ("tile_lists", "tiles::memory bytes; begins with tiles::NO_TILES per class"),
     (
         "unshadowed_image",
-        "what the shade kernel stored at radiance_image (rgba32f, or by RadianceFormat); may be radiance_image",
+        "what the shade kernel stored at radiance_image (rgba32f, or by RadianceFormat); may be \
+         radiance_image",
     ),
     (
         "shadow_image",

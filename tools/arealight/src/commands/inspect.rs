@@ -50,7 +50,8 @@ pub struct Arguments {
     entries: bool,
     /// Draw the pyramid of a light's texture instead, as the GPU makes it: all its levels, each blurred more
     /// than the one before. Of a scene (.glb, .gltf) or of an image (.png, .jpg, .exr).
-    #[arg(long, value_name = "SCENE_OR_IMAGE", conflicts_with_all = ["table", "errors", "entries", "f0", "specular_lobes"])]
+    #[arg(long, value_name = "SCENE_OR_IMAGE", conflicts_with_all = ["table", "errors", "entries", "f0",
+        "specular_lobes"])]
     pyramid: Option<PathBuf>,
     /// Which of the scene's light textures --pyramid draws, from 0.
     #[arg(long, value_name = "INDEX", default_value_t = 0, requires = "pyramid")]

@@ -30,8 +30,8 @@ pub struct ShadowedView {
     blockers: [Buffer; 2],
 }
 
-/// A kernel of another's that shades with shadows. Its bindings have the names of ours; its push constants are
-/// [`ShadeConstants`].
+/// A kernel of another's that shades with shadows. Its bindings have the names of ours; its push constants
+/// are [`ShadeConstants`].
 #[derive(Clone, Copy)]
 pub struct OtherShadows<'a> {
     /// The kernel.

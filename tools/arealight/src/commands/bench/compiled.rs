@@ -31,7 +31,8 @@ const UPDATE: &str = "arealight bench compiled --family navi21,vega10 --update -
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Families of GPU, as Mesa names them: navi21, vangogh, navi10, vega10, polaris10, gfx1100 and so on.
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "navi21", value_parser = family)]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "navi21",
+        value_parser = family)]
     family: Vec<String>,
     /// Only rows whose names contain this, and those that their ratios are of.
     #[arg(long, value_name = "PATTERN")]
@@ -46,7 +47,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", conflicts_with = "only")]
     markdown: Option<PathBuf>,
     /// Compare the rows with a file of --update; benches/data/compiled.json by default.
-    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = FILE, conflicts_with = "update")]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = FILE,
+        conflicts_with = "update")]
     check: Option<PathBuf>,
     /// Write the rows to such a file; its other families stay.
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = FILE, conflicts_with = "only")]

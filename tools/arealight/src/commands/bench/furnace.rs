@@ -15,7 +15,8 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Roughnesses, and as many views.
-    #[arg(long, default_value_t = Options::default().steps, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    #[arg(long, default_value_t = Options::default().steps,
+        value_parser = clap::value_parser!(u32).range(2..=1000))]
     steps: u32,
     #[command(flatten)]
     ends: Ends,

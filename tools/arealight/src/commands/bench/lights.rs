@@ -16,16 +16,19 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 pub struct Arguments {
     /// How many lamps there are.
-    #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_values_t = Options::default().counts, value_parser = parse_count)]
+    #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_values_t = Options::default().counts,
+        value_parser = parse_count)]
     lamps: Vec<usize>,
     /// The picture in pixels.
     #[arg(long, value_name = "WxH", default_value = "640x360", value_parser = parse_size)]
     size: [u32; 2],
     /// Roughness of the floor, in [0.1, 1].
-    #[arg(long, value_name = "R", default_value_t = Options::default().roughness, value_parser = parse_roughness)]
+    #[arg(long, value_name = "R", default_value_t = Options::default().roughness,
+        value_parser = parse_roughness)]
     roughness: f32,
     /// Runs of each frame; the fastest counts.
-    #[arg(long, value_name = "N", default_value_t = Options::default().rounds, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = Options::default().rounds,
+        value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
     /// Write a chart of time and error as SVG.
     #[arg(long, value_name = "FILE")]

@@ -20,10 +20,12 @@ pub struct Arguments {
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Height of the pictures in pixels, which are 16:9.
-    #[arg(long, default_value_t = Options::default().size[1], value_parser = clap::value_parser!(u32).range(16..=2048))]
+    #[arg(long, default_value_t = Options::default().size[1],
+        value_parser = clap::value_parser!(u32).range(16..=2048))]
     size: u32,
     /// Samples a pixel of each of the two references.
-    #[arg(long, default_value_t = Options::default().samples, value_parser = clap::value_parser!(u32).range(2..=1_048_576))]
+    #[arg(long, default_value_t = Options::default().samples,
+        value_parser = clap::value_parser!(u32).range(2..=1_048_576))]
     samples: u32,
     #[command(flatten)]
     ends: Ends,

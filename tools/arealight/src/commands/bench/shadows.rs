@@ -36,10 +36,12 @@ pub struct Arguments {
     #[arg(long, value_parser = clap::value_parser!(u32).range(4..=65_536))]
     samples: Option<u32>,
     /// Rounds in which time is taken.
-    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000), conflicts_with = "motion")]
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000),
+        conflicts_with = "motion")]
     rounds: u32,
     /// Judge every so many of a film's 64 frames.
-    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64), requires = "motion")]
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64),
+        requires = "motion")]
     every: u32,
     /// Draw four frames of the first film in which everything moves: the truth, and one ray a pixel without
     /// and with a history (.png).

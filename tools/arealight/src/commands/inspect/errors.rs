@@ -88,7 +88,9 @@ pub fn found(maps: &[ErrorMap], quads: u16) -> Value {
         })
     };
     json!({
-        "title": format!("mean absolute error over {quads} quads of unit radiance in each cell, clipped in cosine space"),
+        "title": format!(
+            "mean absolute error over {quads} quads of unit radiance in each cell, clipped in cosine space"
+        ),
         "note": "of the reflected radiance; a third of the lights about the mirror direction, a third anywhere, \
                  a third across the horizon",
         "cells_a_side": CELLS,

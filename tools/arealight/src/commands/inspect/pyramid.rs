@@ -180,7 +180,8 @@ impl Pyramid {
         let level = |level: &Level| {
             let channels = level.texels.iter().flat_map(|[r, g, b, _]| [r, g, b]);
             let bytes: Vec<u8> = channels.map(|channel| srgb_from_linear(channel / peak)).collect();
-            json!({ "size": level.extent, "blur": level.blur, "share": self.share(level), "srgb": bytes_of(&bytes) })
+            json!({ "size": level.extent, "blur": level.blur, "share": self.share(level),
+                "srgb": bytes_of(&bytes) })
         };
         json!({
             "title": format!("{}\n{width} x {height} texels{white}", self.name),
