@@ -8,6 +8,7 @@
 
 use crate::LightShape;
 use crate::light_fault::LightFault;
+use crate::light_shape::area_of;
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
@@ -130,14 +131,6 @@ impl LightShape {
         let covered = if two_sided { covered } else { 0.5 * (covered + vector.length()) };
         (covered / PI).sqrt()
     }
-}
-
-/// Area times normal of an outline, by Newell's sum over the vertices.
-pub(crate) fn area_of(outline: &[DVec3]) -> DVec3 {
-    let anchor = outline.first().copied().unwrap_or_default();
-    let offsets = outline.iter().map(|v| *v - anchor);
-    let next = outline.iter().cycle().skip(1).map(|v| *v - anchor);
-    offsets.zip(next).map(|(a, b)| a.cross(b)).sum::<DVec3>() * 0.5
 }
 
 fn count_of(outline: &[DVec3]) -> u32 {

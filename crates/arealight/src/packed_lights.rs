@@ -2,10 +2,12 @@
 
 use crate::gpu::{GpuLight, GpuShape};
 use crate::light_fault::{LightError, LightFault};
+use crate::light_shape::area_of;
 use crate::light_texture::TextureMap;
-use crate::mesh::area_of;
 use crate::{Effects, Light, LightShape};
 use glam::DVec3;
+
+mod shapes;
 
 /// Rows of a texture's place in the vertex buffer.
 const TEXTURE_ROWS: usize = 4;
