@@ -1,35 +1,34 @@
 //! A deferred engine: it draws a G-buffer of its own, and Arealight shades it.
 
-use crate::draw::Users;
 use crate::g_buffer::GBuffer;
-use crate::gpu::{Buffer, FRAMES_IN_FLIGHT, Frames, Gpu, Semaphores};
-use crate::picture::{Picture, Readback};
+use crate::picture::Picture;
 use crate::{Result, scene};
+use arealight_host::{Buffer, FRAMES_IN_FLIGHT, Frames, Host, Location, Semaphores, Usage};
 use arealight_vk::arealight::Plane;
 use arealight_vk::arealight::plan::{Output, ShadeOptions, TileOptions};
 use arealight_vk::{AreaLights, AreaLightsInfo, Resource, ShadeFrame, ShadeResources, TableFormat};
 use ash::vk;
 
 /// Bytes of the scene's vertices, and more.
-const ROOM: usize = 1 << 16;
+const ROOM: u64 = 1 << 16;
 
 /// The engine. Fields are dropped from the top: frames in flight end first.
-pub struct Deferred<'a> {
-    frames: Frames<'a>,
-    vertices: Vec<Buffer<'a>>,
+pub struct Deferred {
+    frames: Frames,
+    vertices: Vec<Buffer>,
     /// What a frame draws to, and leaves the radiance in, in `GENERAL` layout; another after
     /// [`Deferred::resize`].
-    pub g_buffer: GBuffer<'a>,
+    pub g_buffer: GBuffer,
     area_lights: AreaLights,
-    gpu: &'a Gpu<'a>,
+    host: Host,
 }
 
-impl<'a> Deferred<'a> {
+impl Deferred {
     /// Makes the engine for pictures of `size` pixels.
     ///
     /// # Errors
     /// Where the device refuses.
-    pub fn new(gpu: &'a Gpu<'a>, size: [u32; 2]) -> Result<Self> {
+    pub fn new(host: &Host, size: [u32; 2]) -> Result<Self> {
         // doc: new
         // How your surfaces are stored and shaded. It adds to the emission that was drawn
         let options = ShadeOptions { from_depth: true, output: Output::Add, ..ShadeOptions::default() };
@@ -44,14 +43,15 @@ impl<'a> Deferred<'a> {
         };
         // SAFETY: your handles belong together; it is dropped after the frames, and before the device.
         let area_lights = unsafe {
-            AreaLights::new(gpu.instance, gpu.physical_device, &gpu.device, gpu.allocator()?, &info)
+            AreaLights::new(host.instance(), host.physical_device(), host.device(), host.allocator()?, &info)
         }?;
         // doc end
         // Your barriers: here in the render pass that draws the G-buffer
-        let g_buffer = GBuffer::new(gpu, size, area_lights.stages_and_access())?;
-        let buffer = |_| gpu.buffer(vk::BufferUsageFlags::VERTEX_BUFFER, ROOM);
+        let g_buffer = GBuffer::new(host, size, area_lights.stages_and_access())?;
+        let usage = vk::BufferUsageFlags::VERTEX_BUFFER;
+        let buffer = |_| Ok(host.buffer("vertices", ROOM, usage, Location::Upload)?);
         let vertices = (0..FRAMES_IN_FLIGHT).map(buffer).collect::<Result<_>>()?;
-        Ok(Self { frames: Frames::new(gpu)?, vertices, g_buffer, area_lights, gpu })
+        Ok(Self { frames: Frames::new(host)?, vertices, g_buffer, area_lights, host: host.clone() })
     }
 
     /// Goes on with pictures of another size. Waits for the frames in flight, which use the images.
@@ -60,7 +60,7 @@ impl<'a> Deferred<'a> {
     /// Where the device refuses.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         self.frames.wait()?;
-        self.g_buffer = GBuffer::new(self.gpu, size, self.g_buffer.users)?;
+        self.g_buffer = GBuffer::new(&self.host, size, self.g_buffer.users)?;
         Ok(())
     }
 
@@ -77,19 +77,21 @@ impl<'a> Deferred<'a> {
         let Self { frames, vertices, g_buffer, area_lights, .. } = self;
         frames.submit_with(|place, commands| {
             let (camera, triangles) = (scene::camera(g_buffer.size), scene::vertices(seconds));
-            vertices[place].write(bytemuck::cast_slice(&triangles))?;
+            vertices[place].upload(&triangles)?;
             // SAFETY: the commands are being recorded, and the frame before at this place is done.
-            unsafe { g_buffer.draw.record(commands, &camera, vertices[place].raw, triangles.len(), None) };
+            unsafe {
+                g_buffer.draw.record(commands, &camera, vertices[place].handle(), triangles.len(), None);
+            };
             // doc: frame
             // Your images, of any size. What your options don't read is left out
             let images = ShadeResources {
                 planes: [
-                    (Plane::Position, Resource::depth(g_buffer.depth.view)),
-                    (Plane::Normal, Resource::sampled(g_buffer.normal_roughness.view)),
-                    (Plane::BaseColor, Resource::sampled(g_buffer.base_color_metalness.view)),
+                    (Plane::Position, Resource::depth(g_buffer.depth.view())),
+                    (Plane::Normal, Resource::sampled(g_buffer.normal_roughness.view())),
+                    (Plane::BaseColor, Resource::sampled(g_buffer.base_color_metalness.view())),
                 ]
                 .into(),
-                radiance: Resource::stored(g_buffer.radiance.view),
+                radiance: Resource::stored(g_buffer.radiance.view()),
                 ..ShadeResources::default()
             };
             let view = ShadeFrame {
@@ -111,8 +113,6 @@ impl<'a> Deferred<'a> {
     /// # Errors
     /// Where the device refuses.
     pub fn picture(&mut self) -> Result<Picture> {
-        let (image, layout) = (&self.g_buffer.radiance, vk::ImageLayout::GENERAL);
-        let readback = Readback::new(self.gpu, self.g_buffer.size)?;
-        readback.read(&mut self.frames, image, layout, Users::COMPUTE_WRITE)
+        Picture::read(&self.frames, &self.g_buffer.radiance, Usage::COMPUTE_WRITE)
     }
 }

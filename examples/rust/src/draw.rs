@@ -1,8 +1,8 @@
 //! Drawing the scene's triangles into images: a render pass with its only pipeline.
 
 use crate::Result;
-use crate::gpu::{Gpu, Image};
 use crate::scene::{Camera, Vertex};
+use arealight_host::{Host, Image, ImageDescription};
 use ash::vk;
 use std::mem::offset_of;
 
@@ -39,9 +39,9 @@ impl std::ops::BitOr for Users {
 /// What is drawn how.
 pub struct DrawOptions<'a> {
     /// The images drawn to, by location, each with the layout it is left in.
-    pub colors: &'a [(&'a Image<'a>, vk::ImageLayout)],
+    pub colors: &'a [(&'a Image, vk::ImageLayout)],
     /// The depth buffer. It is left readable.
-    pub depth: &'a Image<'a>,
+    pub depth: &'a Image,
     /// The size of all of them.
     pub size: [u32; 2],
     /// The fragment shader, whose set 0 has the layout `set_layout`, if any.
@@ -53,8 +53,8 @@ pub struct DrawOptions<'a> {
 }
 
 /// A render pass that clears its images and draws the scene.
-pub struct Draw<'a> {
-    gpu: &'a Gpu<'a>,
+pub struct Draw {
+    host: Host,
     size: [u32; 2],
     clears: Vec<vk::ClearValue>,
     render_pass: vk::RenderPass,
@@ -63,7 +63,7 @@ pub struct Draw<'a> {
     pipeline: vk::Pipeline,
 }
 
-impl<'a> Draw<'a> {
+impl Draw {
     /// Makes the render pass, its framebuffer and its pipeline.
     ///
     /// # Errors
@@ -71,12 +71,12 @@ impl<'a> Draw<'a> {
     ///
     /// # Safety
     /// The images and the layout outlive this, and no pending work uses it when it is dropped.
-    pub unsafe fn new(gpu: &'a Gpu<'a>, options: &DrawOptions<'_>) -> Result<Self> {
+    pub unsafe fn new(host: &Host, options: &DrawOptions<'_>) -> Result<Self> {
         // Far away is 0
         let mut clears = vec![vk::ClearValue::default(); options.colors.len()];
         clears.push(vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth: 0.0, stencil: 0 } });
         let mut draw = Self {
-            gpu,
+            host: host.clone(),
             size: options.size,
             clears,
             render_pass: vk::RenderPass::null(),
@@ -96,7 +96,7 @@ impl<'a> Draw<'a> {
             .iter()
             .map(|(image, left_in)| {
                 vk::AttachmentDescription::default()
-                    .format(image.format)
+                    .format(image.format())
                     .samples(vk::SampleCountFlags::TYPE_1)
                     .load_op(vk::AttachmentLoadOp::CLEAR)
                     .store_op(vk::AttachmentStoreOp::STORE)
@@ -142,23 +142,23 @@ impl<'a> Draw<'a> {
             .attachments(&attachments)
             .subpasses(&subpasses)
             .dependencies(&dependencies);
-        let views: Vec<_> = images.iter().map(|(image, _)| image.view).collect();
+        let views: Vec<_> = images.iter().map(|(image, _)| image.view()).collect();
         // SAFETY: the device is alive, and what infos point to outlives the calls.
         unsafe {
-            self.render_pass = self.gpu.device.create_render_pass(&info, None)?;
+            self.render_pass = self.host.device().create_render_pass(&info, None)?;
             let info = vk::FramebufferCreateInfo::default()
                 .render_pass(self.render_pass)
                 .attachments(&views)
                 .width(self.size[0])
                 .height(self.size[1])
                 .layers(1);
-            self.framebuffer = self.gpu.device.create_framebuffer(&info, None)?;
+            self.framebuffer = self.host.device().create_framebuffer(&info, None)?;
         }
         Ok(())
     }
 
     fn make_pipeline(&mut self, options: &DrawOptions<'_>) -> Result<()> {
-        let device = &self.gpu.device;
+        let device = self.host.device();
         let set_layouts: Vec<_> = options.set_layout.into_iter().collect();
         let constants =
             [vk::PushConstantRange::default().stage_flags(vk::ShaderStageFlags::VERTEX).size(CAMERA_BYTES)];
@@ -168,8 +168,8 @@ impl<'a> Draw<'a> {
         // SAFETY: the device is alive, and what infos point to outlives the calls; so below.
         self.layout = unsafe { device.create_pipeline_layout(&info, None) }?;
 
-        let vertex = self.gpu.shader_module(include_bytes!("../spirv/scene.vert.spv"))?;
-        let made = self.gpu.shader_module(options.fragment).and_then(|fragment| {
+        let vertex = shader_module(&self.host, include_bytes!("../spirv/scene.vert.spv"))?;
+        let made = shader_module(&self.host, options.fragment).and_then(|fragment| {
             let made = self.make_pipeline_of(vertex, fragment, options.colors.len());
             // SAFETY: pipelines do not need their modules once they are made.
             unsafe { device.destroy_shader_module(fragment, None) };
@@ -249,7 +249,7 @@ impl<'a> Draw<'a> {
             .render_pass(self.render_pass);
         // SAFETY: as above.
         let made =
-            unsafe { self.gpu.device.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None) };
+            unsafe { self.host.device().create_graphics_pipelines(vk::PipelineCache::null(), &[info], None) };
         Ok(made.map_err(|(_, error)| error)?[0])
     }
 
@@ -266,7 +266,7 @@ impl<'a> Draw<'a> {
         count: usize,
         set: Option<vk::DescriptorSet>,
     ) {
-        let device = &self.gpu.device;
+        let device = self.host.device();
         let extent = vk::Extent2D { width: self.size[0], height: self.size[1] };
         let begin = vk::RenderPassBeginInfo::default()
             .render_pass(self.render_pass)
@@ -290,9 +290,9 @@ impl<'a> Draw<'a> {
     }
 }
 
-impl Drop for Draw<'_> {
+impl Drop for Draw {
     fn drop(&mut self) {
-        let device = &self.gpu.device;
+        let device = self.host.device();
         // SAFETY: by the contract of Draw::new nothing is pending; null handles are ignored.
         unsafe {
             device.destroy_pipeline(self.pipeline, None);
@@ -301,4 +301,32 @@ impl Drop for Draw<'_> {
             device.destroy_render_pass(self.render_pass, None);
         }
     }
+}
+
+/// A shader, which whoever asks for it destroys.
+///
+/// # Errors
+/// Where memory is out.
+pub fn shader_module(host: &Host, spirv: &[u8]) -> Result<vk::ShaderModule> {
+    let word = |bytes: &[u8]| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    let words: Vec<u32> = spirv.chunks_exact(4).map(word).collect();
+    // Without what the effects and the quality, constants of a shader that includes the library, rule out
+    let words = arealight_vk::prune(&words, &[]);
+    let info = vk::ShaderModuleCreateInfo::default().code(&words);
+    // SAFETY: the device is alive, and the words outlive the call.
+    Ok(unsafe { host.device().create_shader_module(&info, None) }?)
+}
+
+/// An image of one layer to draw to, for messages `name`.
+///
+/// # Errors
+/// Where there is no memory left, or the device has no such images.
+pub fn image(
+    host: &Host,
+    name: &str,
+    format: vk::Format,
+    extent: [u32; 2],
+    usage: vk::ImageUsageFlags,
+) -> Result<Image> {
+    Ok(host.image(&ImageDescription { name, extent, layers: 1, format, usage })?)
 }

@@ -2,34 +2,35 @@
 //! its own.
 
 use crate::Result;
-use crate::draw::{Draw, DrawOptions, Users};
-use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Image, Memory};
-use crate::picture::{Picture, Readback};
+use crate::draw::{Draw, DrawOptions, Users, image};
+use crate::picture::Picture;
 use crate::scene;
 use arealight::PackedLights;
+use arealight_host::{
+    Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Host, Image, Location, Memory, Usage,
+};
 use arealight_vk::{Context, TableFormat, TableImage};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 
 /// The engine, with images of one size. Fields are dropped from the top, as those of the deferred one.
-pub struct Forward<'a> {
-    frames: Frames<'a>,
-    places: Vec<Place<'a>>,
-    readback: Readback<'a>,
-    draw: Draw<'a>,
-    _sets: DescriptorPool<'a>,
-    _bindings: Bindings<'a>,
+pub struct Forward {
+    frames: Frames,
+    places: Vec<Place>,
+    draw: Draw,
+    _sets: DescriptorPool,
+    _bindings: Bindings,
     _table: TableImage,
-    _table_memory: Memory<'a>,
-    radiance: Image<'a>,
-    _depth: Image<'a>,
+    _table_memory: Memory,
+    radiance: Image,
+    _depth: Image,
     size: [u32; 2],
 }
 
 /// What each frame in flight has for itself.
-struct Place<'a> {
-    vertices: Buffer<'a>,
-    lamps: Buffer<'a>,
+struct Place {
+    vertices: Buffer,
+    lamps: Buffer,
     set: vk::DescriptorSet,
 }
 
@@ -78,30 +79,36 @@ impl Uniforms {
 }
 // doc end
 
-impl<'a> Forward<'a> {
+impl Forward {
     /// Makes the engine for pictures of `size` pixels.
     ///
     /// # Errors
     /// Where the device refuses.
-    pub fn new(gpu: &'a Gpu<'a>, size: [u32; 2]) -> Result<Self> {
-        let mut frames = Frames::new(gpu)?;
+    pub fn new(host: &Host, size: [u32; 2]) -> Result<Self> {
+        let frames = Frames::new(host)?;
         let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
-        let radiance = gpu.image(vk::Format::R32G32B32A32_SFLOAT, size, usage)?;
+        let radiance = image(host, "radiance", vk::Format::R32G32B32A32_SFLOAT, size, usage)?;
         let usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
-        let depth = gpu.image(vk::Format::D32_SFLOAT, size, usage)?;
+        let depth = image(host, "depth", vk::Format::D32_SFLOAT, size, usage)?;
 
         // Give the light table memory, and fill it
-        let (table, table_memory) = upload_table(gpu, &mut frames)?;
+        let (table, table_memory) = upload_table(host)?;
 
         // Point a set at the table and at each place's lights
-        let bindings = Bindings::new(gpu)?;
-        let sets = DescriptorPool::new(gpu, &Bindings::pool_sizes())?;
+        let bindings = Bindings::new(host)?;
+        let sets = host.descriptor_pool(FRAMES_IN_FLIGHT as u32, &Bindings::pool_sizes())?;
         let mut places = vec![];
         for _ in 0..FRAMES_IN_FLIGHT {
-            let vertices = size_of_val(scene::vertices(0.0).as_slice());
+            let bytes = size_of_val(scene::vertices(0.0).as_slice()) as u64;
+            let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
             let place = Place {
-                vertices: gpu.buffer(vk::BufferUsageFlags::VERTEX_BUFFER, vertices)?,
-                lamps: gpu.buffer(vk::BufferUsageFlags::UNIFORM_BUFFER, size_of::<Uniforms>())?,
+                vertices: host.buffer(
+                    "vertices",
+                    bytes,
+                    vk::BufferUsageFlags::VERTEX_BUFFER,
+                    Location::Upload,
+                )?,
+                lamps: host.buffer("lamps", size_of::<Uniforms>() as u64, uniform, Location::Upload)?,
                 // SAFETY: the layout is ours.
                 set: unsafe { sets.allocate(bindings.layout) }?,
             };
@@ -119,9 +126,8 @@ impl<'a> Forward<'a> {
             users: Users::TRANSFER_READ,
         };
         // SAFETY: images and layout outlive the drawing, which is dropped after the frames.
-        let draw = unsafe { Draw::new(gpu, &options) }?;
+        let draw = unsafe { Draw::new(host, &options) }?;
         Ok(Self {
-            readback: Readback::new(gpu, size)?,
             frames,
             places,
             draw,
@@ -146,13 +152,13 @@ impl<'a> Forward<'a> {
             // doc: frame
             let camera = scene::camera(*size);
             let packed = PackedLights::new(&scene::lights(seconds), camera.position.as_dvec3())?;
-            place.lamps.write(bytemuck::bytes_of(&Uniforms::new(&packed)?))?;
+            place.lamps.upload(&[Uniforms::new(&packed)?])?;
             // doc end
             let vertices = scene::vertices(seconds);
-            place.vertices.write(bytemuck::cast_slice(&vertices))?;
+            place.vertices.upload(&vertices)?;
             // SAFETY: the commands are being recorded; buffers and set are this place's.
             unsafe {
-                draw.record(commands, &camera, place.vertices.raw, vertices.len(), Some(place.set));
+                draw.record(commands, &camera, place.vertices.handle(), vertices.len(), Some(place.set));
             }
             Ok(())
         })
@@ -164,42 +170,44 @@ impl<'a> Forward<'a> {
     /// Where the device refuses.
     pub fn picture(&mut self) -> Result<Picture> {
         // What the render pass left is visible to transfers
-        let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
-        self.readback.read(&mut self.frames, &self.radiance, layout, Users::TRANSFER_READ)
+        Picture::read(&self.frames, &self.radiance, Usage::COPY_SOURCE)
     }
 }
 
 /// The table on the device, with its memory.
-fn upload_table<'a>(gpu: &'a Gpu<'a>, frames: &mut Frames<'_>) -> Result<(TableImage, Memory<'a>)> {
+fn upload_table(host: &Host) -> Result<(TableImage, Memory)> {
     // doc: table
     let table = arealight::LightTable::ggx();
     // SAFETY: the handles are of one device, which goes after the image, which goes after the frames.
     let mut image = unsafe {
-        let context = Context::new(gpu.instance, gpu.physical_device, &gpu.device)?;
+        let context = Context::new(host.instance(), host.physical_device(), host.device())?;
         TableImage::new(&context, &table, TableFormat::Rgba16Float)?
     };
-    let memory = gpu.device_memory(image.memory_requirements())?;
+    let memory = host.memory("light table", image.memory_requirements())?;
     // SAFETY: the memory was made for the image.
-    unsafe { image.bind_memory(memory.raw, 0) }?;
+    unsafe {
+        let (place, offset) = memory.place();
+        image.bind_memory(place, offset)?;
+    }
     // doc end
-    let staging = gpu.filled_buffer(vk::BufferUsageFlags::TRANSFER_SRC, &image.bytes(&table))?;
+    let staging = host.storage_buffer("light table, staged", &image.bytes(&table))?;
     // SAFETY: the staging buffer holds the table until the commands are done.
-    frames.run(|commands| unsafe { image.record_upload(commands, staging.raw, 0) })?;
+    host.submit(|commands| unsafe { image.record_upload(commands, staging.handle(), 0) })?;
     Ok((image, memory))
 }
 
 /// Set 0 of `forward.frag`: the table with a sampler, and the lights.
-struct Bindings<'a> {
-    gpu: &'a Gpu<'a>,
+struct Bindings {
+    host: Host,
     sampler: vk::Sampler,
     layout: vk::DescriptorSetLayout,
 }
 
-impl<'a> Bindings<'a> {
+impl Bindings {
     const TYPES: [vk::DescriptorType; 2] =
         [vk::DescriptorType::COMBINED_IMAGE_SAMPLER, vk::DescriptorType::UNIFORM_BUFFER];
 
-    fn new(gpu: &'a Gpu<'a>) -> Result<Self> {
+    fn new(host: &Host) -> Result<Self> {
         let bindings: Vec<_> = (0..)
             .zip(Self::TYPES)
             .map(|(number, kind)| {
@@ -208,11 +216,15 @@ impl<'a> Bindings<'a> {
             })
             .collect();
         let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-        let mut made = Self { gpu, sampler: vk::Sampler::null(), layout: vk::DescriptorSetLayout::null() };
+        let mut made = Self {
+            host: host.clone(),
+            sampler: vk::Sampler::null(),
+            layout: vk::DescriptorSetLayout::null(),
+        };
         // SAFETY: the device is alive. The table is read by texel, so that any sampler will do.
         unsafe {
-            made.sampler = gpu.device.create_sampler(&vk::SamplerCreateInfo::default(), None)?;
-            made.layout = gpu.device.create_descriptor_set_layout(&info, None)?;
+            made.sampler = host.device().create_sampler(&vk::SamplerCreateInfo::default(), None)?;
+            made.layout = host.device().create_descriptor_set_layout(&info, None)?;
         }
         Ok(made)
     }
@@ -223,13 +235,13 @@ impl<'a> Bindings<'a> {
 
     /// # Safety
     /// As of `vkUpdateDescriptorSets`.
-    unsafe fn write(&self, set: vk::DescriptorSet, table: &TableImage, lamps: &Buffer<'_>) {
+    unsafe fn write(&self, set: vk::DescriptorSet, table: &TableImage, lamps: &Buffer) {
         let image = [vk::DescriptorImageInfo {
             sampler: self.sampler,
             image_view: table.view(),
             image_layout: TableImage::LAYOUT,
         }];
-        let buffer = [vk::DescriptorBufferInfo { buffer: lamps.raw, offset: 0, range: vk::WHOLE_SIZE }];
+        let buffer = [vk::DescriptorBufferInfo { buffer: lamps.handle(), offset: 0, range: vk::WHOLE_SIZE }];
         let write = |binding: u32| {
             vk::WriteDescriptorSet::default()
                 .dst_set(set)
@@ -238,16 +250,16 @@ impl<'a> Bindings<'a> {
         };
         let writes = [write(0).image_info(&image), write(1).buffer_info(&buffer)];
         // SAFETY: the caller's contract.
-        unsafe { self.gpu.device.update_descriptor_sets(&writes, &[]) };
+        unsafe { self.host.device().update_descriptor_sets(&writes, &[]) };
     }
 }
 
-impl Drop for Bindings<'_> {
+impl Drop for Bindings {
     fn drop(&mut self) {
         // SAFETY: this goes after the frames.
         unsafe {
-            self.gpu.device.destroy_descriptor_set_layout(self.layout, None);
-            self.gpu.device.destroy_sampler(self.sampler, None);
+            self.host.device().destroy_descriptor_set_layout(self.layout, None);
+            self.host.device().destroy_sampler(self.sampler, None);
         }
     }
 }

@@ -1,31 +1,31 @@
 //! The deferred engine's G-buffer, and the drawing into it.
 
 use crate::Result;
-use crate::draw::{Draw, DrawOptions, Users};
-use crate::gpu::{Gpu, Image};
+use crate::draw::{Draw, DrawOptions, Users, image};
 use arealight::Plane;
+use arealight_host::{Host, Image};
 use arealight_vk::ShadeFormats;
 use ash::vk;
 
 /// The images: depth, and what the fragment shader writes. The drawing is dropped before them.
-pub struct GBuffer<'a> {
+pub struct GBuffer {
     /// Draws the scene into the images.
-    pub draw: Draw<'a>,
+    pub draw: Draw,
     /// Reversed.
-    pub depth: Image<'a>,
+    pub depth: Image,
     /// As [`arealight::plan::GBufferLayout::Arealight`] says.
-    pub normal_roughness: Image<'a>,
+    pub normal_roughness: Image,
     /// Likewise.
-    pub base_color_metalness: Image<'a>,
+    pub base_color_metalness: Image,
     /// What is emitted, and then what the pass adds.
-    pub radiance: Image<'a>,
+    pub radiance: Image,
     /// Of all images, in pixels.
     pub size: [u32; 2],
     /// In which stages, and how, the images are used between one drawing and the next.
     pub users: (vk::PipelineStageFlags, vk::AccessFlags),
 }
 
-impl<'a> GBuffer<'a> {
+impl GBuffer {
     // doc: formats
     /// The images' formats; what the pass does not read needs none.
     pub fn formats() -> ShadeFormats {
@@ -47,7 +47,7 @@ impl<'a> GBuffer<'a> {
     /// # Errors
     /// Where memory is out, or the device has no such images.
     pub fn new(
-        gpu: &'a Gpu<'a>,
+        host: &Host,
         size: [u32; 2],
         users: (vk::PipelineStageFlags, vk::AccessFlags),
     ) -> Result<Self> {
@@ -56,10 +56,12 @@ impl<'a> GBuffer<'a> {
         let (color, sampled) = (vk::ImageUsageFlags::COLOR_ATTACHMENT, vk::ImageUsageFlags::SAMPLED);
         let depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | sampled;
         let radiance = color | vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::TRANSFER_SRC;
-        let depth = gpu.image(formats.planes[Plane::Position], size, depth)?;
-        let normal_roughness = gpu.image(formats.planes[Plane::Normal], size, color | sampled)?;
-        let base_color_metalness = gpu.image(formats.planes[Plane::BaseColor], size, color | sampled)?;
-        let radiance = gpu.image(formats.radiance, size, radiance)?;
+        let depth = image(host, "depth", formats.planes[Plane::Position], size, depth)?;
+        let normal_roughness =
+            image(host, "normal roughness", formats.planes[Plane::Normal], size, color | sampled)?;
+        let base_color_metalness =
+            image(host, "base color metalness", formats.planes[Plane::BaseColor], size, color | sampled)?;
+        let radiance = image(host, "radiance", formats.radiance, size, radiance)?;
         // doc end
         let read_only = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
         let colors = [
@@ -76,7 +78,7 @@ impl<'a> GBuffer<'a> {
             users: Users { stages: users.0, access: users.1 } | Users::TRANSFER_READ,
         };
         // SAFETY: the images are dropped after the drawing; owners wait for pending work first.
-        let draw = unsafe { Draw::new(gpu, &options) }?;
+        let draw = unsafe { Draw::new(host, &options) }?;
         Ok(Self { draw, depth, normal_roughness, base_color_metalness, radiance, size, users })
     }
 }

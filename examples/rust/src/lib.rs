@@ -1,4 +1,5 @@
-//! Two small engines that embed Arealight, each with a device, memory and frames in flight of its own:
+//! Two small engines that embed Arealight, on a host that knows nothing of it (`tools/host`: a device, memory,
+//! frames in flight, a window's images):
 //!
 //! - [`deferred`] draws a G-buffer, and has it shaded by `AreaLights` (`arealight-vk`); [`recorded`] is the
 //!   same engine by the recorder, which owns nothing;
@@ -16,22 +17,27 @@
 //! cargo run --release -p arealight-examples --features window --bin deferred
 //! ```
 //!
-//! Both make the same picture. What is theirs alone is in [`deferred`], [`recorded`] and [`forward`]; what
-//! every Vulkan engine has is in [`gpu`] and [`draw`].
+//! Both make the same picture. What is theirs alone is in [`deferred`], [`recorded`] and [`forward`]; how they
+//! draw triangles is in [`draw`].
 
 pub mod command_line;
 pub mod deferred;
 pub mod draw;
 pub mod forward;
 pub mod g_buffer;
-pub mod gpu;
 pub mod picture;
 pub mod recorded;
 pub mod scene;
-pub mod swapchain;
 pub mod tone_map;
 #[cfg(feature = "window")]
 pub mod window;
 
 /// What can fail; an engine would have a type of its own.
 pub type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
+
+/// A host that draws and computes, by Vulkan 1.1 as every device has it: nothing optional is enabled.
+pub fn host_options() -> arealight_host::HostOptions {
+    let queue = ash::vk::QueueFlags::GRAPHICS | ash::vk::QueueFlags::COMPUTE;
+    let newest_version = ash::vk::API_VERSION_1_1;
+    arealight_host::HostOptions { queue, newest_version, ..arealight_host::HostOptions::default() }
+}

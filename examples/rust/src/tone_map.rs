@@ -2,25 +2,26 @@
 //! window's.
 
 use crate::Result;
-use crate::gpu::{DescriptorPool, Gpu, Image};
+use crate::draw::{image, shader_module};
+use arealight_host::{DescriptorPool, Host, Image};
 use ash::vk;
 
 /// Pixels a side of a workgroup of `tone_map.comp`.
 const GROUP: u32 = 8;
 
 /// The pass, for one image of radiance.
-pub struct ToneMap<'a> {
-    gpu: &'a Gpu<'a>,
-    shown: Image<'a>,
+pub struct ToneMap {
+    host: Host,
+    shown: Image,
     size: [u32; 2],
-    sets: DescriptorPool<'a>,
+    sets: DescriptorPool,
     set: vk::DescriptorSet,
     set_layout: vk::DescriptorSetLayout,
     layout: vk::PipelineLayout,
     pipeline: vk::Pipeline,
 }
 
-impl<'a> ToneMap<'a> {
+impl ToneMap {
     /// Makes the pass for an image of `size` pixels, of `R32G32B32A32_SFLOAT`, in `GENERAL` layout.
     ///
     /// # Errors
@@ -28,14 +29,14 @@ impl<'a> ToneMap<'a> {
     ///
     /// # Safety
     /// The image outlives the use of this, and no pending work uses this when it is dropped.
-    pub unsafe fn new(gpu: &'a Gpu<'a>, radiance: &Image<'_>, size: [u32; 2]) -> Result<Self> {
+    pub unsafe fn new(host: &Host, radiance: &Image, size: [u32; 2]) -> Result<Self> {
         let usage = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::TRANSFER_SRC;
-        let shown = gpu.image(vk::Format::R8G8B8A8_UNORM, size, usage)?;
+        let shown = image(host, "shown", vk::Format::R8G8B8A8_UNORM, size, usage)?;
         let kind = vk::DescriptorType::STORAGE_IMAGE;
         let sets =
-            DescriptorPool::new(gpu, &[vk::DescriptorPoolSize::default().ty(kind).descriptor_count(2)])?;
+            host.descriptor_pool(1, &[vk::DescriptorPoolSize::default().ty(kind).descriptor_count(2)])?;
         let mut made = Self {
-            gpu,
+            host: host.clone(),
             shown,
             size,
             sets,
@@ -48,7 +49,7 @@ impl<'a> ToneMap<'a> {
 
         // SAFETY: the layout is the device's.
         made.set = unsafe { made.sets.allocate(made.set_layout) }?;
-        let images = [radiance.view, made.shown.view].map(|view| {
+        let images = [radiance.view(), made.shown.view()].map(|view| {
             let info = vk::DescriptorImageInfo::default();
             [info.image_view(view).image_layout(vk::ImageLayout::GENERAL)]
         });
@@ -56,12 +57,12 @@ impl<'a> ToneMap<'a> {
         let writes =
             [write.dst_binding(0).image_info(&images[0]), write.dst_binding(1).image_info(&images[1])];
         // SAFETY: nothing uses the set yet.
-        unsafe { gpu.device.update_descriptor_sets(&writes, &[]) };
+        unsafe { host.device().update_descriptor_sets(&writes, &[]) };
         Ok(made)
     }
 
     fn make_pipeline(&mut self, kind: vk::DescriptorType) -> Result<()> {
-        let device = &self.gpu.device;
+        let device = self.host.device();
         let binding = |index| {
             let binding = vk::DescriptorSetLayoutBinding::default().binding(index).descriptor_count(1);
             binding.descriptor_type(kind).stage_flags(vk::ShaderStageFlags::COMPUTE)
@@ -75,7 +76,7 @@ impl<'a> ToneMap<'a> {
         // SAFETY: as above.
         self.layout = unsafe { device.create_pipeline_layout(&info, None) }?;
 
-        let module = self.gpu.shader_module(include_bytes!("../spirv/tone_map.spv"))?;
+        let module = shader_module(&self.host, include_bytes!("../spirv/tone_map.spv"))?;
         let stage = vk::PipelineShaderStageCreateInfo::default()
             .stage(vk::ShaderStageFlags::COMPUTE)
             .module(module)
@@ -98,7 +99,7 @@ impl<'a> ToneMap<'a> {
     /// # Safety
     /// The commands are being recorded, and the image is free from the stage `TRANSFER` on.
     pub unsafe fn record(&self, commands: vk::CommandBuffer, target: vk::Image, layout: vk::ImageLayout) {
-        let Self { gpu, shown, size: [width, height], .. } = self;
+        let Self { host, shown, size: [width, height], .. } = self;
         let (compute, transfer) = (vk::PipelineStageFlags::COMPUTE_SHADER, vk::PipelineStageFlags::TRANSFER);
         let (undefined, general) = (vk::ImageLayout::UNDEFINED, vk::ImageLayout::GENERAL);
         let source = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
@@ -111,15 +112,15 @@ impl<'a> ToneMap<'a> {
             let radiance = [vk::MemoryBarrier::default()
                 .src_access_mask(written)
                 .dst_access_mask(vk::AccessFlags::SHADER_READ)];
-            let anew = [transition(shown.raw, [undefined, general], [none, written])];
+            let anew = [transition(shown.handle(), [undefined, general], [none, written])];
             self.barrier(commands, [compute | transfer, compute], &radiance, &anew);
             let point = vk::PipelineBindPoint::COMPUTE;
-            gpu.device.cmd_bind_pipeline(commands, point, self.pipeline);
-            gpu.device.cmd_bind_descriptor_sets(commands, point, self.layout, 0, &[self.set], &[]);
-            gpu.device.cmd_dispatch(commands, width.div_ceil(GROUP), height.div_ceil(GROUP), 1);
+            host.device().cmd_bind_pipeline(commands, point, self.pipeline);
+            host.device().cmd_bind_descriptor_sets(commands, point, self.layout, 0, &[self.set], &[]);
+            host.device().cmd_dispatch(commands, width.div_ceil(GROUP), height.div_ceil(GROUP), 1);
 
             // A blit, which converts what differs in format
-            let ready = transition(shown.raw, [general, source], [written, read]);
+            let ready = transition(shown.handle(), [general, source], [written, read]);
             self.barrier(commands, [compute, transfer], &[], &[ready]);
             let lost = transition(target, [undefined, copied], [none, copy]);
             self.barrier(commands, [transfer, transfer], &[], &[lost]);
@@ -133,7 +134,7 @@ impl<'a> ToneMap<'a> {
                 .dst_subresource(layers)
                 .dst_offsets(whole);
             let nearest = vk::Filter::NEAREST;
-            gpu.device.cmd_blit_image(commands, shown.raw, source, target, copied, &[blit], nearest);
+            host.device().cmd_blit_image(commands, shown.handle(), source, target, copied, &[blit], nearest);
             let left = transition(target, [copied, layout], [copy, none]);
             self.barrier(commands, [transfer, vk::PipelineStageFlags::BOTTOM_OF_PIPE], &[], &[left]);
         }
@@ -148,15 +149,15 @@ impl<'a> ToneMap<'a> {
         memory: &[vk::MemoryBarrier<'_>],
         images: &[vk::ImageMemoryBarrier<'_>],
     ) {
-        let (device, no_flags) = (&self.gpu.device, vk::DependencyFlags::empty());
+        let (device, no_flags) = (self.host.device(), vk::DependencyFlags::empty());
         // SAFETY: the same contract.
         unsafe { device.cmd_pipeline_barrier(commands, from, to, no_flags, memory, &[], images) };
     }
 }
 
-impl Drop for ToneMap<'_> {
+impl Drop for ToneMap {
     fn drop(&mut self) {
-        let device = &self.gpu.device;
+        let device = self.host.device();
         // SAFETY: by the contract of ToneMap::new nothing is pending; null handles are ignored.
         unsafe {
             device.destroy_pipeline(self.pipeline, None);

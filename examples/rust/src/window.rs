@@ -3,11 +3,9 @@
 use crate::Result;
 use crate::command_line::FRAME_RATE;
 use crate::deferred::Deferred;
-use crate::gpu::{Gpu, Instance};
-use crate::swapchain::{Surface, Swapchain};
 use crate::tone_map::ToneMap;
+use arealight_host::{Host, HostError, Swapchain};
 use ash::vk;
-use std::ffi::CStr;
 use std::fmt::Display;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
@@ -49,27 +47,15 @@ pub fn show(size: [u32; 2], frames: Option<u32>) -> Result<Shown> {
     let (display, handle) = (window.display_handle()?.as_raw(), window.window_handle()?.as_raw());
 
     // A device that presents to it
-    let needed = ash_window::enumerate_required_extensions(display)?;
-    // SAFETY: they are strings of C, and constants.
-    let needed: Vec<&CStr> = needed.iter().map(|name| unsafe { CStr::from_ptr(*name) }).collect();
-    let instance = match Instance::with(&needed) {
-        Ok(instance) => instance,
-        Err(error) => return nowhere(&error),
-    };
-    // SAFETY: the handles are of the window, which outlives the surface, and the instance has the extensions.
-    let surface = unsafe {
-        let raw = ash_window::create_surface(&instance.entry, &instance, display, handle, None)?;
-        Surface::new(&instance, raw)
-    };
-    let present = |device, family| surface.is_shown_by(device, family);
-    let gpu = match Gpu::with(&instance, &[ash::khr::swapchain::NAME], present) {
-        Ok(gpu) => gpu,
+    // SAFETY: the handles are of the window, which outlives the host and all that is made of it.
+    let host = match unsafe { Host::for_window(crate::host_options(), display, handle) } {
+        Ok(host) => host,
         Err(error) => return nowhere(&error),
     };
 
     // Frame by frame, at the size that the window has then
-    let mut engine = Deferred::new(&gpu, size)?;
-    let mut view: Option<View<'_>> = None;
+    let mut engine = Deferred::new(&host, size)?;
+    let mut view: Option<View> = None;
     let (start, mut drawn) = (Instant::now(), 0);
     while frames.is_none_or(|frames| drawn < frames) {
         let patience = if view.is_none() { Duration::from_millis(20) } else { Duration::ZERO };
@@ -79,7 +65,7 @@ pub fn show(size: [u32; 2], frames: Option<u32>) -> Result<Shown> {
         }
         view = view.filter(|view| view.wanted == desk.size);
         if view.is_none() {
-            view = View::new(&gpu, &surface, desk.size, &mut engine)?;
+            view = View::new(&host, desk.size, &mut engine)?;
         }
         let seconds = frames.map_or_else(|| start.elapsed().as_secs_f64(), |_| f64::from(drawn) / FRAME_RATE);
         let Some(shown) = &view else { continue }; // minimised
@@ -97,36 +83,32 @@ pub fn show(size: [u32; 2], frames: Option<u32>) -> Result<Shown> {
 
 /// Whether the window is no longer as it was when the swapchain was made.
 fn is_out_of_date(error: &(dyn std::error::Error + 'static)) -> bool {
-    error.downcast_ref() == Some(&vk::Result::ERROR_OUT_OF_DATE_KHR)
+    let result = vk::Result::ERROR_OUT_OF_DATE_KHR;
+    matches!(error.downcast_ref(), Some(HostError::Vulkan { result: found, .. }) if *found == result)
 }
 
 /// The window's images, and how the engine's become them. The swapchain is dropped first, and waits.
-struct View<'a> {
-    swapchain: Swapchain<'a>,
-    tone_map: ToneMap<'a>,
+struct View {
+    swapchain: Swapchain,
+    tone_map: ToneMap,
     /// The size of the window that it was made for.
     wanted: [u32; 2],
 }
 
-impl<'a> View<'a> {
+impl View {
     /// Makes both, and the engine's images as large. `None` where the window has no area.
-    fn new(
-        gpu: &'a Gpu<'a>,
-        surface: &'a Surface<'a>,
-        wanted: [u32; 2],
-        engine: &mut Deferred<'_>,
-    ) -> Result<Option<Self>> {
-        // SAFETY: the device has the extension; the view before was dropped.
-        let Some(swapchain) = (unsafe { Swapchain::new(gpu, surface, wanted) })? else { return Ok(None) };
+    fn new(host: &Host, wanted: [u32; 2], engine: &mut Deferred) -> Result<Option<Self>> {
+        // SAFETY: the view before was dropped, and its swapchain with it.
+        let Some(swapchain) = (unsafe { Swapchain::new(host, wanted) })? else { return Ok(None) };
         engine.resize(swapchain.size)?;
         // SAFETY: the image stays until the engine is resized, when no view is left; the swapchain waits
         // before this goes.
-        let tone_map = unsafe { ToneMap::new(gpu, &engine.g_buffer.radiance, swapchain.size) }?;
+        let tone_map = unsafe { ToneMap::new(host, &engine.g_buffer.radiance, swapchain.size) }?;
         Ok(Some(Self { swapchain, tone_map, wanted }))
     }
 
     /// Draws a frame and shows it. Whether its size still fits the window.
-    fn frame(&self, engine: &mut Deferred<'_>, seconds: f64) -> Result<bool> {
+    fn frame(&self, engine: &mut Deferred, seconds: f64) -> Result<bool> {
         let Self { swapchain, tone_map, .. } = self;
         // doc: frame
         // Behind the frame's own commands: acquire an image, and bring the radiance to it; then show it
@@ -142,7 +124,7 @@ impl<'a> View<'a> {
             }
         })?;
         // SAFETY: the frame was submitted, and leaves the image in that layout.
-        unsafe { swapchain.present(shown) }
+        Ok(unsafe { swapchain.present(shown) }?)
         // doc end
     }
 }

@@ -1,11 +1,12 @@
 //! The example engines on a validated device with nothing optional enabled.
 
-use arealight_engine::host::testing::instance_or_skip;
 use arealight_examples::deferred::Deferred;
 use arealight_examples::forward::Forward;
-use arealight_examples::gpu::{FRAMES_IN_FLIGHT, Frames, Gpu, Semaphores};
+use arealight_examples::host_options;
 use arealight_examples::picture::Picture;
 use arealight_examples::recorded::Recorded;
+use arealight_host::testing::device_of;
+use arealight_host::{FRAMES_IN_FLIGHT, Frames, Location, Semaphores};
 use ash::vk;
 use std::process::Command;
 
@@ -26,9 +27,9 @@ const TOLERANCE: f32 = 1e-4;
 
 #[test]
 fn both_engines_make_the_same_picture_whatever_they_drew_before() {
-    let Some(instance) = instance_or_skip() else { return };
-    let gpu = Gpu::new(&instance).unwrap();
-    let (mut deferred, mut forward) = (Deferred::new(&gpu, SIZE).unwrap(), Forward::new(&gpu, SIZE).unwrap());
+    let Some(host) = device_of(&host_options()) else { return };
+    let (mut deferred, mut forward) =
+        (Deferred::new(&host, SIZE).unwrap(), Forward::new(&host, SIZE).unwrap());
     let mut pictures = |seconds: &[f64]| {
         for &seconds in seconds {
             deferred.frame(seconds, |_, _| Ok(Semaphores::default())).unwrap();
@@ -41,7 +42,7 @@ fn both_engines_make_the_same_picture_whatever_they_drew_before() {
     println!("largest difference: {apart:e}");
     assert!(apart <= TOLERANCE, "{apart:e} apart");
     // The recorder alone makes the same bits, and another picture of another moment
-    let mut recorded = Recorded::new(&gpu, SIZE).unwrap();
+    let mut recorded = Recorded::new(&host, SIZE).unwrap();
     for (seconds, is_same) in [(0.4, false), (0.5, true)] {
         recorded.frame(seconds).unwrap();
         assert_eq!(recorded.picture().unwrap() == first, is_same);
@@ -78,24 +79,23 @@ fn both_engines_make_the_same_picture_whatever_they_drew_before() {
 
 #[test]
 fn a_frame_that_cannot_be_recorded_keeps_its_place_for_the_next() {
-    let Some(instance) = instance_or_skip() else { return };
-    let gpu = Gpu::new(&instance).unwrap();
-    let mut frames = Frames::new(&gpu).unwrap();
-    let buffer = gpu.buffer(vk::BufferUsageFlags::TRANSFER_DST, 4).unwrap();
+    let Some(host) = device_of(&host_options()) else { return };
+    let mut frames = Frames::new(&host).unwrap();
+    let buffer = host.buffer("number", 4, vk::BufferUsageFlags::TRANSFER_DST, Location::Readback).unwrap();
     let fill = |commands, number| {
         // SAFETY: the commands are being recorded, and waited for before the buffer goes.
-        unsafe { gpu.device.cmd_fill_buffer(commands, buffer.raw, 0, 4, number) };
+        unsafe { host.device().cmd_fill_buffer(commands, buffer.handle(), 0, 4, number) };
     };
     // More often than frames are in flight, so that each place fails and is used again
     for number in 1..=2 * FRAMES_IN_FLIGHT as u32 {
         let mut places = vec![];
-        let failed = frames.submit(|place, commands| {
+        let failed: arealight_examples::Result<()> = frames.submit(|place, commands| {
             places.push(place);
             fill(commands, 0);
             Err("a light of two vertices".into())
         });
         assert_eq!(failed.unwrap_err().to_string(), "a light of two vertices");
-        let recorded = frames.submit(|place, commands| {
+        let recorded: arealight_examples::Result<()> = frames.submit(|place, commands| {
             places.push(place);
             fill(commands, number);
             Ok(())
@@ -104,14 +104,14 @@ fn a_frame_that_cannot_be_recorded_keeps_its_place_for_the_next() {
         assert_eq!(places[0], places[1]);
         // Nothing of the frame that failed was run
         frames.wait().unwrap();
-        assert_eq!(buffer.read(), number.to_ne_bytes());
+        assert_eq!(buffer.download::<u32>().unwrap(), [number]);
     }
 }
 
 #[test]
 fn the_programs_save_pictures() {
     // For the log, and to be skipped without a device
-    let Some(_instance) = instance_or_skip() else { return };
+    let Some(_host) = device_of(&host_options()) else { return };
     let folder = tempfile::tempdir().unwrap();
     for program in [env!("CARGO_BIN_EXE_deferred"), env!("CARGO_BIN_EXE_forward")] {
         let path = folder.path().join("picture.png");

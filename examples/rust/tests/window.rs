@@ -3,10 +3,11 @@
 
 mod screen;
 
-use arealight_engine::host::testing::instance_or_skip;
 use arealight_examples::command_line::FRAME_RATE;
 use arealight_examples::deferred::Deferred;
-use arealight_examples::gpu::{Gpu, Semaphores};
+use arealight_examples::host_options;
+use arealight_host::Semaphores;
+use arealight_host::testing::device_of;
 use screen::{Screen, under_validation};
 use std::process::Stdio;
 
@@ -25,7 +26,7 @@ fn difference(a: &[u8], b: &[u8]) -> u8 {
 
 #[test]
 fn a_window_shows_what_the_engine_draws() {
-    let Some(instance) = instance_or_skip() else { return };
+    let Some(host) = device_of(&host_options()) else { return };
     let Some(screen) = Screen::start(SIZE) else { return };
     let folder = tempfile::tempdir().unwrap();
     let mut command =
@@ -47,8 +48,7 @@ fn a_window_shows_what_the_engine_draws() {
 
     // What was seen: some pictures are caught while the next is copied over them, so one of all must be a
     // frame's
-    let gpu = Gpu::new(&instance).unwrap();
-    let mut engine = Deferred::new(&gpu, SIZE).unwrap();
+    let mut engine = Deferred::new(&host, SIZE).unwrap();
     let frames = (0..FRAMES).map(|frame| {
         engine.frame(f64::from(frame) / FRAME_RATE, |_, _| Ok(Semaphores::default())).unwrap();
         engine.picture().unwrap().encoded()
@@ -65,7 +65,7 @@ fn a_window_shows_what_the_engine_draws() {
 #[test]
 fn without_a_display_it_saves_a_picture_and_says_so() {
     // Skipped where the other is
-    let Some(_instance) = instance_or_skip() else { return };
+    let Some(_host) = device_of(&host_options()) else { return };
     let folder = tempfile::tempdir().unwrap();
     let mut command = under_validation(
         PROGRAM,

@@ -9,9 +9,9 @@
 mod eval;
 mod eval_shapes;
 mod g_buffer;
-pub mod host;
+
 mod kept;
-mod memory;
+
 mod passes;
 mod render;
 mod scene_textures;
@@ -19,9 +19,10 @@ mod table;
 mod texture_array;
 mod textures;
 
+pub use arealight_host as host;
+pub use arealight_host::{Host, HostError, HostOptions, Validation};
 pub use eval::{EvalPoint, gpu_case};
 pub use g_buffer::{GBuffer, texel_of};
-pub use host::{Host, HostError, HostOptions, Validation};
 pub use kept::Kept;
 pub use passes::{BoundSet, Passes, SharedPass};
 pub use render::shadowed::{OtherShadows, ShadowedView};

@@ -1,9 +1,9 @@
 //! The light table on the device, with its memory.
 
 use crate::EngineError;
+use crate::host::Memory;
 use crate::host::{Host, Location};
 use crate::kept::Kept;
-use crate::memory::Memory;
 use arealight::LightTable;
 use arealight_vk::{Context, Resource, TableFormat, TableImage};
 use ash::vk;

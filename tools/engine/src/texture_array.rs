@@ -1,7 +1,7 @@
 //! Light textures on a host, with their memory and descriptor sets, and images to load into them.
 
+use crate::host::Memory;
 use crate::host::{DescriptorPool, Host, Image, ImageDescription, Usage};
-use crate::memory::Memory;
 use crate::{EngineError, Kept, Passes, SourceImage, SourceTexels};
 use arealight::PyramidSize;
 use arealight_vk::{LightTextures, Resource, TextureUpdate};

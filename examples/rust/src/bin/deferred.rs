@@ -3,7 +3,7 @@
 
 use arealight_examples::command_line::CommandLine;
 use arealight_examples::deferred::Deferred;
-use arealight_examples::gpu::{Gpu, Instance, Semaphores};
+use arealight_host::{Host, Semaphores};
 
 fn main() -> arealight_examples::Result<()> {
     let wanted = CommandLine::parse(std::env::args().skip(1))?;
@@ -18,9 +18,8 @@ fn main() -> arealight_examples::Result<()> {
             Shown::Nowhere(why) => eprintln!("There is no window ({why}): a picture is saved instead"),
         }
     }
-    let instance = Instance::new()?;
-    let gpu = Gpu::new(&instance)?;
-    let mut engine = Deferred::new(&gpu, wanted.size)?;
+    let host = Host::new(arealight_examples::host_options())?;
+    let mut engine = Deferred::new(&host, wanted.size)?;
     for seconds in wanted.times() {
         engine.frame(seconds, |_, _| Ok(Semaphores::default()))?;
     }

@@ -2,13 +2,12 @@
 
 use arealight_examples::command_line::CommandLine;
 use arealight_examples::forward::Forward;
-use arealight_examples::gpu::{Gpu, Instance};
+use arealight_host::Host;
 
 fn main() -> arealight_examples::Result<()> {
     let wanted = CommandLine::parse(std::env::args().skip(1))?;
-    let instance = Instance::new()?;
-    let gpu = Gpu::new(&instance)?;
-    let mut engine = Forward::new(&gpu, wanted.size)?;
+    let host = Host::new(arealight_examples::host_options())?;
+    let mut engine = Forward::new(&host, wanted.size)?;
     for seconds in wanted.times() {
         engine.frame(seconds)?;
     }

@@ -1,9 +1,9 @@
 //! Images: two-dimensional, with layers.
 
-use crate::host::device::Host;
-use crate::host::error::{HostError, NameCall as _};
-use crate::host::memory::{Buffer, Location};
-use crate::host::submit::Usage;
+use crate::device::Host;
+use crate::error::{HostError, NameCall as _};
+use crate::memory::{Buffer, Location};
+use crate::submit::Usage;
 use ash::vk;
 use bytemuck::Pod;
 use gpu_allocator::vulkan::Allocation;

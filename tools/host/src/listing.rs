@@ -1,9 +1,9 @@
 //! What Vulkan offers here.
 
-use crate::host::device::{Candidate, candidates, default_index};
-use crate::host::error::HostError;
-use crate::host::instance::{Instance, version_text};
-use crate::host::validation::Validation;
+use crate::device::{Candidate, candidates, default_index};
+use crate::error::HostError;
+use crate::instance::{Instance, version_text};
+use crate::validation::Validation;
 use ash::vk;
 
 /// The kind of a device, from the one taken first to the last.
@@ -36,7 +36,7 @@ impl std::fmt::Display for DeviceKind {
 /// A device as far as it matters here.
 #[derive(Debug, Clone)]
 pub struct DeviceSummary {
-    /// What [`crate::host::HostOptions::device`] takes.
+    /// What [`crate::HostOptions::device`] takes.
     pub index: usize,
     /// Its name.
     pub name: String,
@@ -60,14 +60,14 @@ pub struct DeviceSummary {
     pub limits: vk::PhysicalDeviceLimits,
 }
 
-/// Lists every device, in the order that [`crate::host::HostOptions::device`] counts them.
+/// Lists every device, in the order that [`crate::HostOptions::device`] counts them.
 ///
 /// # Errors
 /// [`HostError::LoaderMissing`] where there is no Vulkan at all, [`HostError::NoDevice`] where it has no
 /// driver. Drivers without a device are an empty list.
 pub fn devices() -> Result<Vec<DeviceSummary>, HostError> {
     let instance = Instance::new(Validation::Off)?;
-    let candidates = candidates(&instance)?;
+    let candidates = candidates(&instance, vk::QueueFlags::COMPUTE, None)?;
     let default = default_index(&candidates);
     Ok(candidates.into_iter().map(|candidate| summary(&instance, candidate, default)).collect())
 }

@@ -1,9 +1,10 @@
 //! The device: which one is taken, how it is made, and in which order all of it goes.
 
-use crate::host::error::{HostError, NameCall as _};
-use crate::host::instance::{Instance, version_text};
-use crate::host::null_hardware::is_null_hardware;
-use crate::host::validation::{Message, MessageLog, Validation};
+use crate::error::{HostError, NameCall as _};
+use crate::instance::{Instance, version_text};
+use crate::null_hardware::is_null_hardware;
+use crate::swapchain::Surface;
+use crate::validation::{Message, MessageLog, Validation};
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::mem::ManuallyDrop;
@@ -14,7 +15,7 @@ use std::time::Duration;
 /// What a [`Host`] is made with.
 #[derive(Debug, Clone)]
 pub struct HostOptions {
-    /// The device: its index in [`crate::host::devices`], or a part of its name (upper and lower case are the
+    /// The device: its index in [`crate::devices`], or a part of its name (upper and lower case are the
     /// same). `None` takes a discrete GPU, else the best kind there is.
     pub device: Option<String>,
     /// What the validation layer looks at; [`Host::validation_messages`] has what it says.
@@ -24,6 +25,10 @@ pub struct HostOptions {
     pub robust_buffer_access: bool,
     /// Enables `VK_KHR_push_descriptor`.
     pub push_descriptors: bool,
+    /// What the queue does: it computes by default. A host that draws asks for `GRAPHICS`, too.
+    pub queue: vk::QueueFlags,
+    /// The newest version of Vulkan that may be used, if the loader has it: 1.3 by default.
+    pub newest_version: u32,
     /// How long [`Host::submit`] waits for the GPU; 10 minutes by default, for slow dispatches on a CPU.
     pub timeout: Duration,
 }
@@ -35,12 +40,14 @@ impl Default for HostOptions {
             validation: Validation::Off,
             robust_buffer_access: false,
             push_descriptors: false,
+            queue: vk::QueueFlags::COMPUTE,
+            newest_version: vk::API_VERSION_1_3,
             timeout: Duration::from_secs(600),
         }
     }
 }
 
-/// A Vulkan device with one compute queue and an allocator. Clones share it.
+/// A Vulkan device with one queue and an allocator. Clones share it.
 #[derive(Clone)]
 pub struct Host {
     inner: Arc<Inner>,
@@ -49,6 +56,8 @@ pub struct Host {
 struct Inner {
     /// Dropped last, and not at all where the device is not.
     instance: ManuallyDrop<Instance>,
+    /// Of the window that the host presents to; it goes before the instance.
+    surface: Option<Surface>,
     physical_device: vk::PhysicalDevice,
     properties: vk::PhysicalDeviceProperties,
     device: ash::Device,
@@ -76,10 +85,20 @@ impl Host {
     /// Says what is missing and how to get it: the loader, a driver, the device that was asked for, the
     /// validation layer, a feature.
     pub fn new(options: HostOptions) -> Result<Self, HostError> {
-        let HostOptions { device: wanted, validation, robust_buffer_access, push_descriptors, timeout } =
+        let instance = Instance::with(options.newest_version, options.validation, &[])?;
+        Self::of(instance, None, options)
+    }
+
+    /// A host of an instance, that presents to its surface; which goes first where there is an error.
+    pub(crate) fn of(
+        instance: Instance,
+        surface: Option<Surface>,
+        options: HostOptions,
+    ) -> Result<Self, HostError> {
+        let HostOptions { device: wanted, robust_buffer_access, push_descriptors, queue, timeout, .. } =
             options;
-        let instance = Instance::new(validation)?;
-        let candidate = choose(candidates(&instance)?, wanted.as_deref())?;
+        let found = candidates(&instance, queue, surface.as_ref())?;
+        let candidate = choose(found, wanted.as_deref())?;
         let (physical_device, queue_family) = (candidate.physical_device, candidate.queue_family);
 
         // Enable nothing optional unless asked
@@ -97,7 +116,7 @@ impl Host {
         // Make the device with one queue
         let queues =
             [vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family).queue_priorities(&[1.0])];
-        let extensions = extensions(&instance, physical_device, push_descriptors)?;
+        let extensions = extensions(&instance, physical_device, push_descriptors, surface.is_some())?;
         let info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_features(&enabled_features)
@@ -109,24 +128,17 @@ impl Host {
         // SAFETY: The device was made with this queue.
         let queue = unsafe { device.get_device_queue(queue_family, 0) };
 
-        let allocator = Allocator::new(&AllocatorCreateDesc {
-            instance: instance.raw.clone(),
-            device: device.clone(),
-            physical_device,
-            debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
-            buffer_device_address: false,
-            allocation_sizes: gpu_allocator::AllocationSizes::default(),
-        });
-        let allocator = match allocator {
+        let allocator = match new_allocator(&instance.raw, physical_device, &device) {
             Ok(allocator) => allocator,
             Err(error) => {
                 // SAFETY: Nothing was made of the device yet.
                 unsafe { device.destroy_device(None) };
-                return Err(HostError::OutOfMemory { what: format!("the allocator ({error})") });
+                return Err(error);
             }
         };
         let inner = Inner {
             instance: ManuallyDrop::new(instance),
+            surface,
             physical_device,
             properties,
             device,
@@ -154,6 +166,11 @@ impl Host {
     /// The device.
     pub fn device(&self) -> &ash::Device {
         &self.inner.device
+    }
+
+    /// The surface of the window that it presents to.
+    pub(crate) fn surface(&self) -> Option<&Surface> {
+        self.inner.surface.as_ref()
     }
 
     /// The family of the queue; it computes and copies.
@@ -184,6 +201,15 @@ impl Host {
     /// Bits of the queue's timestamps that count; 0 where it has none.
     pub fn timestamp_valid_bits(&self) -> u32 {
         self.inner.timestamp_valid_bits
+    }
+
+    /// Another allocator, for what owns memory of its own: all that was made with it goes before the host.
+    ///
+    /// # Errors
+    /// [`HostError::OutOfMemory`].
+    pub fn allocator(&self) -> Result<Arc<Mutex<Allocator>>, HostError> {
+        let made = new_allocator(self.instance(), self.physical_device(), self.device())?;
+        Ok(Arc::new(Mutex::new(made)))
     }
 
     /// Lends the allocator, for memory that this crate's types do not cover. What is allocated must be freed
@@ -228,7 +254,7 @@ impl Drop for Inner {
     fn drop(&mut self) {
         let allocator = self.allocator.get_mut().unwrap_or_else(PoisonError::into_inner).take();
         if *self.abandoned.get_mut() {
-            std::mem::forget(allocator);
+            std::mem::forget((allocator, self.surface.take()));
             return;
         }
         // SAFETY: Every object of the device holds the host and is thus gone, and no work is pending, since
@@ -237,9 +263,26 @@ impl Drop for Inner {
         unsafe {
             drop(allocator);
             self.device.destroy_device(None);
+            drop(self.surface.take());
             ManuallyDrop::drop(&mut self.instance);
         }
     }
+}
+
+fn new_allocator(
+    instance: &ash::Instance,
+    physical_device: vk::PhysicalDevice,
+    device: &ash::Device,
+) -> Result<Allocator, HostError> {
+    let made = Allocator::new(&AllocatorCreateDesc {
+        instance: instance.clone(),
+        device: device.clone(),
+        physical_device,
+        debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
+        buffer_device_address: false,
+        allocation_sizes: gpu_allocator::AllocationSizes::default(),
+    });
+    made.map_err(|error| HostError::OutOfMemory { what: format!("the allocator ({error})") })
 }
 
 /// A physical device, and what speaks for or against it.
@@ -249,34 +292,47 @@ pub(crate) struct Candidate {
     pub(crate) physical_device: vk::PhysicalDevice,
     pub(crate) properties: vk::PhysicalDeviceProperties,
     pub(crate) name: String,
-    /// A family that computes; of no meaning where `lack` is set.
+    /// A family that does what is asked for; of no meaning where `lack` is set.
     pub(crate) queue_family: u32,
     pub(crate) timestamp_valid_bits: u32,
     /// Why it cannot be used.
     pub(crate) lack: Option<String>,
 }
 
-/// Every physical device, usable or not.
-pub(crate) fn candidates(instance: &Instance) -> Result<Vec<Candidate>, HostError> {
-    let devices = instance.physical_devices()?;
-    Ok(devices.into_iter().enumerate().map(|(index, device)| candidate(instance, index, device)).collect())
+/// Every physical device, whether it has a queue for that or not: what it does, and where it presents to.
+pub(crate) fn candidates(
+    instance: &Instance,
+    queue: vk::QueueFlags,
+    surface: Option<&Surface>,
+) -> Result<Vec<Candidate>, HostError> {
+    let devices = instance.physical_devices()?.into_iter().enumerate();
+    Ok(devices.map(|(index, device)| candidate(instance, index, device, queue, surface)).collect())
 }
 
-fn candidate(instance: &Instance, index: usize, physical_device: vk::PhysicalDevice) -> Candidate {
+fn candidate(
+    instance: &Instance,
+    index: usize,
+    physical_device: vk::PhysicalDevice,
+    queue: vk::QueueFlags,
+    surface: Option<&Surface>,
+) -> Candidate {
     // SAFETY: The physical device is of this instance, which is alive; for both calls.
     let (properties, families) = unsafe {
         let properties = instance.raw.get_physical_device_properties(physical_device);
         (properties, instance.raw.get_physical_device_queue_family_properties(physical_device))
     };
-    let computes = |family: &vk::QueueFamilyProperties| family.queue_flags.contains(vk::QueueFlags::COMPUTE);
-    let family = families.iter().position(computes);
+    let does = |(number, family): (u32, &vk::QueueFamilyProperties)| {
+        family.queue_flags.contains(queue)
+            && surface.is_none_or(|surface| surface.is_shown_by(physical_device, number))
+    };
+    let family = (0..).zip(&families).position(does);
     let name = properties.device_name_as_c_str().unwrap_or_default().to_string_lossy().into_owned();
     let lack = if is_null_hardware(&name) {
         Some("it compiles shaders and runs none: see arealight bench compiled".to_owned())
     } else if properties.api_version < vk::API_VERSION_1_1 {
         Some(format!("only Vulkan {}", version_text(properties.api_version)))
     } else if family.is_none() {
-        Some("no compute queue".to_owned())
+        Some(if surface.is_some() { "no queue for the window" } else { "no compute queue" }.to_owned())
     } else {
         None
     };
@@ -343,6 +399,7 @@ fn extensions(
     instance: &Instance,
     physical_device: vk::PhysicalDevice,
     push_descriptors: bool,
+    presents: bool,
 ) -> Result<Vec<*const std::ffi::c_char>, HostError> {
     // SAFETY: The physical device is of this instance, which is alive.
     let offered = unsafe { instance.raw.enumerate_device_extension_properties(physical_device) };
@@ -352,6 +409,12 @@ fn extensions(
     let mut enabled = vec![];
     if is_there(vk::KHR_PORTABILITY_SUBSET_NAME) {
         enabled.push(vk::KHR_PORTABILITY_SUBSET_NAME.as_ptr());
+    }
+    if presents {
+        if !is_there(vk::KHR_SWAPCHAIN_NAME) {
+            return Err(HostError::MissingFeature("VK_KHR_swapchain"));
+        }
+        enabled.push(vk::KHR_SWAPCHAIN_NAME.as_ptr());
     }
     if push_descriptors {
         if !is_there(vk::KHR_PUSH_DESCRIPTOR_NAME) {

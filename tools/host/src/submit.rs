@@ -1,7 +1,7 @@
 //! Submission of one-time commands, barriers between them, and how long they took.
 
-use crate::host::device::Host;
-use crate::host::error::{HostError, NameCall as _};
+use crate::device::Host;
+use crate::error::{HostError, NameCall as _};
 use ash::vk;
 use std::time::Duration;
 

@@ -5,11 +5,11 @@
 //! `VK_KHR_pipeline_executable_properties` says of them. The loader and the driver read the variables when
 //! they start, so a process must be started with them ([`set_environment`]).
 
-use crate::host::device::candidates;
-use crate::host::error::{HostError, NameCall as _};
-use crate::host::instance::Instance;
-use crate::host::listing::driver;
-use crate::host::validation::Validation;
+use crate::device::candidates;
+use crate::error::{HostError, NameCall as _};
+use crate::instance::Instance;
+use crate::listing::driver;
+use crate::validation::Validation;
 use ash::vk;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -118,7 +118,7 @@ impl Compiler {
     /// statistics.
     pub fn new() -> Result<Self, HostError> {
         let instance = Instance::new(Validation::Off)?;
-        let found = candidates(&instance)?;
+        let found = candidates(&instance, vk::QueueFlags::COMPUTE, None)?;
         let names = found.iter().map(|one| one.name.clone()).collect();
         let Some(null) = found.into_iter().find(|one| is_null_hardware(&one.name)) else {
             return Err(HostError::NoNullHardware { found: names });

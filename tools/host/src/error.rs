@@ -9,9 +9,8 @@ pub enum HostError {
     /// There is no Vulkan loader.
     #[error(
         "Vulkan is not installed here: its loader cannot be opened ({0}). Install the loader and a driver; \
-        on \
-         Debian: apt-get install libvulkan1 mesa-vulkan-drivers (the latter computes on the CPU where there \
-         is no GPU)"
+         on Debian: apt-get install libvulkan1 mesa-vulkan-drivers (the latter computes on the CPU where \
+         there is no GPU)"
     )]
     LoaderMissing(#[source] ash::LoadingError),
     /// The loader is of Vulkan 1.0.
@@ -22,8 +21,7 @@ pub enum HostError {
     /// The loader finds no driver, or none of its devices has Vulkan 1.1 and a queue that computes.
     #[error(
         "no usable Vulkan device (found: {}). Install the driver of your GPU, or one that computes on the \
-        CPU; \
-         on Debian: apt-get install mesa-vulkan-drivers",
+         CPU; on Debian: apt-get install mesa-vulkan-drivers",
         list(found)
     )]
     NoDevice {
@@ -68,7 +66,7 @@ pub enum HostError {
     /// The device lacks a feature that was asked for.
     #[error("the device lacks the feature {0}: do not ask for it, or choose another device")]
     MissingFeature(&'static str),
-    /// There is no null hardware to compile for ([`crate::host::null_hardware`]).
+    /// There is no null hardware to compile for ([`crate::null_hardware`]).
     #[error("the driver offers no null hardware of that family (found: {})", list(found))]
     NoNullHardware {
         /// Devices that there are.
@@ -86,8 +84,7 @@ pub enum HostError {
     /// The device was lost: the driver reset it, or crashed.
     #[error(
         "the Vulkan device was lost in {call}: the driver reset it, usually for a dispatch that took too \
-        long \
-         or read out of bounds. Try again with less work, and with validation; the system's log may say more"
+         long or read out of bounds. Try again with less work, and with validation; the system's log may say more"
     )]
     DeviceLost {
         /// The Vulkan function that said so.

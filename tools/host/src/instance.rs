@@ -1,7 +1,7 @@
 //! The Vulkan instance, with validation where it is asked for.
 
-use crate::host::error::{HostError, NameCall as _};
-use crate::host::validation::{LAYER, MessageLog, Switch, Validation};
+use crate::error::{HostError, NameCall as _};
+use crate::validation::{LAYER, MessageLog, Switch, Validation};
 use ash::vk;
 use std::ffi::CStr;
 use std::sync::Arc;
@@ -12,17 +12,18 @@ pub(crate) struct Instance {
     pub(crate) messages: Arc<MessageLog>,
     messenger: Option<(ash::ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     /// Keeps the loader's library open.
-    entry: ash::Entry,
+    pub(crate) entry: ash::Entry,
 }
 
 impl Instance {
     /// For applications of the loader's version of Vulkan, from 1.1 to 1.3.
     pub(crate) fn new(validation: Validation) -> Result<Self, HostError> {
-        Self::for_version(vk::API_VERSION_1_3, validation)
+        Self::with(vk::API_VERSION_1_3, validation, &[])
     }
 
-    /// Likewise, up to `newest`: nothing that came later may be used, and the validation layer says so.
-    pub(crate) fn for_version(newest: u32, validation: Validation) -> Result<Self, HostError> {
+    /// The same up to `newest`, with extensions of a window's: nothing that came later may be used, and the
+    /// validation layer says so.
+    pub(crate) fn with(newest: u32, validation: Validation, of_window: &[&CStr]) -> Result<Self, HostError> {
         // SAFETY: The loader's library has initialisers that are safe to run.
         let entry = unsafe { ash::Entry::load() }.map_err(HostError::LoaderMissing)?;
         let api_version = application_version(&entry, newest)?;
@@ -33,7 +34,7 @@ impl Instance {
 
         // Ask for what the loader offers of what is useful
         let offered = extensions_of(&entry, None)?;
-        let mut extensions: Vec<&CStr> = vec![];
+        let mut extensions = of_window.to_vec();
         let mut flags = vk::InstanceCreateFlags::empty();
         if offered.contains(&vk::KHR_PORTABILITY_ENUMERATION_NAME) {
             extensions.push(vk::KHR_PORTABILITY_ENUMERATION_NAME);

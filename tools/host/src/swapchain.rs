@@ -1,28 +1,52 @@
 //! The images of a window, which takes them in turn.
 
-use crate::Result;
-use crate::gpu::{FRAMES_IN_FLIGHT, Gpu, Instance, Semaphores};
+use crate::device::Host;
+use crate::error::{HostError, NameCall as _};
+use crate::frames::{FRAMES_IN_FLIGHT, Semaphores};
+#[cfg(feature = "window")]
+use crate::{device::HostOptions, instance::Instance};
 use ash::khr::{surface, swapchain};
 use ash::vk;
+#[cfg(feature = "window")]
+use raw_window_handle::{RawDisplayHandle, RawWindowHandle};
 
-/// Where a window shows images. Destroyed when this is dropped.
-pub struct Surface<'a> {
+/// Where a window shows images.
+pub(crate) struct Surface {
     functions: surface::Instance,
     raw: vk::SurfaceKHR,
-    _instance: &'a Instance,
 }
 
-impl<'a> Surface<'a> {
-    /// Takes a surface over.
+#[cfg(feature = "window")]
+impl Host {
+    /// As [`Host::new`], with a queue that presents to a window.
+    ///
+    /// # Errors
+    /// As [`Host::new`], and where the window cannot be presented to.
     ///
     /// # Safety
-    /// The surface is the instance's, which has `VK_KHR_surface`, and goes before its window.
-    pub unsafe fn new(instance: &'a Instance, raw: vk::SurfaceKHR) -> Self {
-        Self { functions: surface::Instance::new(&instance.entry, instance), raw, _instance: instance }
+    /// The handles are those of a window and its display, which outlive the host and all that is made of it.
+    pub unsafe fn for_window(
+        options: HostOptions,
+        display: RawDisplayHandle,
+        window: RawWindowHandle,
+    ) -> Result<Self, HostError> {
+        let needed = ash_window::enumerate_required_extensions(display)
+            .named("ash_window::enumerate_required_extensions")?;
+        // SAFETY: They are strings of C, and constants.
+        let needed: Vec<_> = needed.iter().map(|name| unsafe { std::ffi::CStr::from_ptr(*name) }).collect();
+        let instance = Instance::with(options.newest_version, options.validation, &needed)?;
+        let functions = surface::Instance::new(&instance.entry, &instance.raw);
+        // SAFETY: The caller's contract; the instance has the extensions.
+        let raw =
+            unsafe { ash_window::create_surface(&instance.entry, &instance.raw, display, window, None) };
+        let surface = Surface { functions, raw: raw.named("ash_window::create_surface")? };
+        Self::of(instance, Some(surface), options)
     }
+}
 
+impl Surface {
     /// Whether a queue of this family can present here what is copied.
-    pub fn is_shown_by(&self, device: vk::PhysicalDevice, family: u32) -> bool {
+    pub(crate) fn is_shown_by(&self, device: vk::PhysicalDevice, family: u32) -> bool {
         // SAFETY: the device is the instance's, and has the family.
         let presents =
             unsafe { self.functions.get_physical_device_surface_support(device, family, self.raw) };
@@ -30,36 +54,43 @@ impl<'a> Surface<'a> {
     }
 
     /// One of the formats that any device can blit to, whose numbers are taken for sRGB as they are.
-    fn format(&self, device: vk::PhysicalDevice) -> Result<vk::SurfaceFormatKHR> {
+    fn format(&self, device: vk::PhysicalDevice) -> Result<vk::SurfaceFormatKHR, HostError> {
         // SAFETY: as above.
-        let offered = unsafe { self.functions.get_physical_device_surface_formats(device, self.raw) }?;
+        let offered = unsafe { self.functions.get_physical_device_surface_formats(device, self.raw) };
+        let offered = offered.named("vkGetPhysicalDeviceSurfaceFormatsKHR")?;
         let can = |one: &vk::SurfaceFormatKHR| {
             matches!(one.format, vk::Format::B8G8R8A8_UNORM | vk::Format::R8G8B8A8_UNORM)
                 && one.color_space == vk::ColorSpaceKHR::SRGB_NONLINEAR
         };
-        Ok(offered.into_iter().find(can).ok_or("the window takes no images of eight bits a channel")?)
+        offered.into_iter().find(can).ok_or_else(|| refuse("takes no images of eight bits a channel"))
     }
 
-    fn capabilities(&self, device: vk::PhysicalDevice) -> Result<vk::SurfaceCapabilitiesKHR> {
+    fn capabilities(&self, device: vk::PhysicalDevice) -> Result<vk::SurfaceCapabilitiesKHR, HostError> {
         // SAFETY: as above.
-        let found = unsafe { self.functions.get_physical_device_surface_capabilities(device, self.raw) }?;
+        let found = unsafe { self.functions.get_physical_device_surface_capabilities(device, self.raw) };
+        let found = found.named("vkGetPhysicalDeviceSurfaceCapabilitiesKHR")?;
         if !found.supported_usage_flags.contains(vk::ImageUsageFlags::TRANSFER_DST) {
-            return Err("the window's images cannot be copied to".into());
+            return Err(refuse("has images that cannot be copied to"));
         }
         Ok(found)
     }
 }
 
-impl Drop for Surface<'_> {
+/// What a window cannot do.
+fn refuse(message: &str) -> HostError {
+    HostError::InvalidArgument { name: "the window".to_owned(), message: message.to_owned() }
+}
+
+impl Drop for Surface {
     fn drop(&mut self) {
-        // SAFETY: swapchains borrow the surface, so none is left.
+        // SAFETY: Swapchains hold the host, which holds the surface, so none is left.
         unsafe { self.functions.destroy_surface(self.raw, None) };
     }
 }
 
-/// Images of a window at one size. When that changes, or a call says so, drop it and make another.
-pub struct Swapchain<'a> {
-    gpu: &'a Gpu<'a>,
+/// Images of the host's window at one size. When that changes, or a call says so, drop it and make another.
+pub struct Swapchain {
+    host: Host,
     functions: swapchain::Device,
     raw: vk::SwapchainKHR,
     images: Vec<vk::Image>,
@@ -69,21 +100,21 @@ pub struct Swapchain<'a> {
     drawn: Vec<vk::Semaphore>,
     /// The images' width and height.
     pub size: [u32; 2],
-    _surface: &'a Surface<'a>,
 }
 
-impl<'a> Swapchain<'a> {
+impl Swapchain {
     /// Makes images as large as the window, or of `size` where the window leaves that open; none where it has
     /// no area, as one that is minimised.
     ///
     /// # Errors
-    /// Where the device refuses.
+    /// [`HostError::InvalidArgument`] where the host has no window; where the device refuses.
     ///
     /// # Safety
-    /// The device has `VK_KHR_swapchain`, and the surface no other swapchain.
-    pub unsafe fn new(gpu: &'a Gpu<'a>, surface: &'a Surface<'a>, size: [u32; 2]) -> Result<Option<Self>> {
-        let limits = surface.capabilities(gpu.physical_device)?;
-        let format = surface.format(gpu.physical_device)?;
+    /// The host has no other swapchain.
+    pub unsafe fn new(host: &Host, size: [u32; 2]) -> Result<Option<Self>, HostError> {
+        let surface = host.surface().ok_or_else(|| refuse("is none: the host was made without one"))?;
+        let limits = surface.capabilities(host.physical_device())?;
+        let format = surface.format(host.physical_device())?;
         let extent = if limits.current_extent.width == u32::MAX {
             let (least, most) = (limits.min_image_extent, limits.max_image_extent);
             let width = size[0].clamp(least.width, most.width);
@@ -113,20 +144,20 @@ impl<'a> Swapchain<'a> {
             .present_mode(vk::PresentModeKHR::FIFO)
             .clipped(true);
         let mut made = Self {
-            gpu,
-            functions: swapchain::Device::new(gpu.instance, &gpu.device),
+            host: host.clone(),
+            functions: swapchain::Device::new(host.instance(), host.device()),
             raw: vk::SwapchainKHR::null(),
             images: vec![],
             free: vec![],
             drawn: vec![],
             size: [extent.width, extent.height],
-            _surface: surface,
         };
         // SAFETY: the caller's contract; what is made is destroyed with `made`.
         unsafe {
-            made.raw = made.functions.create_swapchain(&info, None)?;
-            made.images = made.functions.get_swapchain_images(made.raw)?;
-            let semaphore = || gpu.device.create_semaphore(&vk::SemaphoreCreateInfo::default(), None);
+            made.raw = made.functions.create_swapchain(&info, None).named("vkCreateSwapchainKHR")?;
+            made.images = made.functions.get_swapchain_images(made.raw).named("vkGetSwapchainImagesKHR")?;
+            let info = vk::SemaphoreCreateInfo::default();
+            let semaphore = || host.device().create_semaphore(&info, None).named("vkCreateSemaphore");
             for _ in 0..FRAMES_IN_FLIGHT {
                 made.free.push(semaphore()?);
             }
@@ -141,16 +172,16 @@ impl<'a> Swapchain<'a> {
     /// it.
     ///
     /// # Errors
-    /// `ERROR_OUT_OF_DATE_KHR` where the window has changed, and where the device refuses.
+    /// [`HostError::Vulkan`] with `ERROR_OUT_OF_DATE_KHR` where the window has changed, and where the device refuses.
     ///
     /// # Safety
     /// No frame of this place is in flight, and the next that is submitted has these semaphores.
-    pub unsafe fn acquire(&self, place: usize) -> Result<(vk::Image, u32, Semaphores)> {
+    pub unsafe fn acquire(&self, place: usize) -> Result<(vk::Image, u32, Semaphores), HostError> {
         let free = self.free[place];
         // SAFETY: the caller's contract: nothing waits for the semaphore any more.
         let acquired =
             unsafe { self.functions.acquire_next_image(self.raw, u64::MAX, free, vk::Fence::null()) };
-        let (index, _) = acquired?; // an image that does not quite fit is still shown
+        let (index, _) = acquired.named("vkAcquireNextImageKHR")?; // an image that does not quite fit is still shown
         let semaphores = Semaphores {
             wait: Some((free, vk::PipelineStageFlags::TRANSFER)),
             signal: Some(self.drawn[index as usize]),
@@ -165,20 +196,22 @@ impl<'a> Swapchain<'a> {
     ///
     /// # Safety
     /// The frame that draws it was submitted, and leaves it in `PRESENT_SRC_KHR` layout.
-    pub unsafe fn present(&self, index: u32) -> Result<bool> {
+    pub unsafe fn present(&self, index: u32) -> Result<bool, HostError> {
         let (drawn, swapchains, indices) = ([self.drawn[index as usize]], [self.raw], [index]);
         let info = vk::PresentInfoKHR::default()
             .wait_semaphores(&drawn)
             .swapchains(&swapchains)
             .image_indices(&indices);
-        // SAFETY: the caller's contract.
-        Ok(!unsafe { self.functions.queue_present(self.gpu.queue, &info) }?)
+        let queue = self.host.queue();
+        // SAFETY: the caller's contract; the queue is locked.
+        let presented = unsafe { self.functions.queue_present(*queue, &info) };
+        Ok(!presented.named("vkQueuePresentKHR")?)
     }
 }
 
-impl Drop for Swapchain<'_> {
+impl Drop for Swapchain {
     fn drop(&mut self) {
-        let device = &self.gpu.device;
+        let device = self.host.device();
         // SAFETY: all are this device's, and after the wait nothing uses them; a lost device uses nothing
         // either.
         unsafe {

@@ -1,6 +1,6 @@
 //! The validation layer: how it is switched on, and what it says, kept per instance.
 
-use crate::host::error::HostError;
+use crate::error::HostError;
 use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::{Mutex, PoisonError};

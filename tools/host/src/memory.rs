@@ -1,7 +1,7 @@
 //! Buffers, and how data gets into and out of them.
 
-use crate::host::device::Host;
-use crate::host::error::{HostError, NameCall as _};
+use crate::device::Host;
+use crate::error::{HostError, NameCall as _};
 use ash::vk;
 use bytemuck::Pod;
 use gpu_allocator::MemoryLocation;
@@ -38,6 +38,39 @@ pub struct Buffer {
     size: u64,
     /// Locked, since threads may share the buffer and its mapping.
     allocation: Mutex<Option<Allocation>>,
+}
+
+/// Memory on the device for something that is not this crate's. It holds its host.
+#[derive(Debug)]
+pub struct Memory {
+    host: Host,
+    allocation: Option<Allocation>,
+}
+
+impl Memory {
+    /// Takes an allocation of the host's allocator.
+    pub fn new(host: &Host, allocation: Allocation) -> Self {
+        Self { host: host.clone(), allocation: Some(allocation) }
+    }
+
+    /// What it is a part of, and where in that it begins.
+    ///
+    /// # Safety
+    /// The handle is not freed, and not used after this is dropped.
+    pub unsafe fn place(&self) -> (vk::DeviceMemory, u64) {
+        // SAFETY: the same contract.
+        let place = |one: &Allocation| (unsafe { one.memory() }, one.offset());
+        self.allocation.as_ref().map(place).unwrap_or_default()
+    }
+}
+
+impl Drop for Memory {
+    fn drop(&mut self) {
+        if self.host.is_abandoned() {
+            std::mem::forget(self.allocation.take());
+        }
+        self.host.free(self.allocation.take());
+    }
 }
 
 /// The smallest buffer that [`Host::storage_buffer`] makes: Vulkan knows no empty ones.
@@ -89,6 +122,14 @@ impl Host {
             buffer.upload(items)?;
         }
         Ok(buffer)
+    }
+
+    /// Memory on the device for an image that is not this crate's.
+    ///
+    /// # Errors
+    /// [`HostError::OutOfMemory`].
+    pub fn memory(&self, name: &str, requirements: vk::MemoryRequirements) -> Result<Memory, HostError> {
+        Ok(Memory::new(self, self.allocate(name, requirements, Location::Device, false)?))
     }
 
     /// Memory for a buffer (`linear`) or an image.

@@ -1,10 +1,10 @@
-//! The Vulkan host of the tools, tests and benchmarks: it finds Vulkan, picks a device, and owns memory and
-//! submission, so that the Arealight crates themselves need not.
+//! The Vulkan host of the tools, tests, benchmarks and examples: it finds Vulkan, picks a device, and owns
+//! memory, submission, frames in flight and a window's images, so that the Arealight crates need not.
 //!
 //! ```no_run
-//! use arealight_engine::host::{Host, HostOptions, Validation};
+//! use arealight_host::{Host, HostOptions, Validation};
 //!
-//! # fn main() -> Result<(), arealight_engine::host::HostError> {
+//! # fn main() -> Result<(), arealight_host::HostError> {
 //! let host = Host::new(HostOptions { validation: Validation::Core, ..HostOptions::default() })?;
 //! let numbers = host.storage_buffer("numbers", &[1.0_f32, 2.0])?;
 //! host.submit(|commands| { /* record into `commands` */ })?;
@@ -20,20 +20,24 @@
 mod descriptors;
 mod device;
 mod error;
+mod frames;
 mod image;
 mod instance;
 mod listing;
 mod memory;
 pub mod null_hardware;
 mod submit;
+mod swapchain;
 pub mod testing;
 mod validation;
 
 pub use descriptors::DescriptorPool;
 pub use device::{Host, HostOptions};
 pub use error::HostError;
+pub use frames::{FRAMES_IN_FLIGHT, Frames, Semaphores};
 pub use image::{Image, ImageDescription};
 pub use listing::{DeviceKind, DeviceSummary, devices};
-pub use memory::{Buffer, Location};
+pub use memory::{Buffer, Location, Memory};
 pub use submit::Usage;
+pub use swapchain::Swapchain;
 pub use validation::{Message, Severity, Validation};

@@ -1,7 +1,7 @@
 //! Descriptor sets for tools: allocated from a pool, freed with it.
 
-use crate::host::device::Host;
-use crate::host::error::{HostError, NameCall as _};
+use crate::device::Host;
+use crate::error::{HostError, NameCall as _};
 use ash::vk;
 
 /// A descriptor pool. Its sets live as long as it does.

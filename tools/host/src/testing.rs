@@ -10,12 +10,10 @@
 //! `AREALIGHT_DEVICE` chooses the device, and `AREALIGHT_VALIDATION` (`off`, `core`, `synchronization` or
 //! `gpu-assisted`) what is validated; synchronisation by default.
 
-use crate::host::device::{Host, HostOptions};
-use crate::host::error::HostError;
-use crate::host::instance::Instance;
-use crate::host::null_hardware::driver_file;
-use crate::host::validation::{Message, MessageLog, Validation};
-use ash::vk;
+use crate::device::{Host, HostOptions};
+use crate::error::HostError;
+use crate::null_hardware::driver_file;
+use crate::validation::{Message, MessageLog, Validation};
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -47,53 +45,6 @@ impl Drop for TestHost {
     }
 }
 
-/// A validated instance of Vulkan 1.1 alone, for the test of a host that makes its own device. It fails the
-/// test as a [`TestHost`] does.
-pub struct TestInstance {
-    /// `None` only while it is being dropped.
-    instance: Option<Instance>,
-    log: Arc<MessageLog>,
-}
-
-impl std::ops::Deref for TestInstance {
-    type Target = ash::Instance;
-
-    fn deref(&self) -> &ash::Instance {
-        let Some(instance) = self.instance.as_ref() else {
-            unreachable!("the instance is taken only by drop")
-        };
-        &instance.raw
-    }
-}
-
-impl Drop for TestInstance {
-    fn drop(&mut self) {
-        // Let the instance go first, so that the layer reports what was never destroyed.
-        self.instance = None;
-        let messages = self.log.take();
-        if !std::thread::panicking() {
-            assert_silent(&messages);
-        }
-    }
-}
-
-/// An instance for a test, validated as `AREALIGHT_VALIDATION` says. `None` where there is no device: return
-/// then.
-///
-/// # Panics
-/// As [`device_or_skip`].
-pub fn instance_or_skip() -> Option<TestInstance> {
-    let made =
-        Instance::for_version(vk::API_VERSION_1_1, validation_asked_for()).and_then(
-            |instance| match instance.physical_devices()?.len() {
-                0 => Err(HostError::NoDevice { found: vec![] }),
-                _ => Ok(instance),
-            },
-        );
-    let instance = made_or_skip(made)?;
-    Some(TestInstance { log: Arc::clone(&instance.messages), instance: Some(instance) })
-}
-
 /// A device for a test, validated as `AREALIGHT_VALIDATION` says. `None` where there is none: return then.
 ///
 /// # Panics
@@ -101,6 +52,17 @@ pub fn instance_or_skip() -> Option<TestInstance> {
 /// another way; where a variable has no known value.
 pub fn device_or_skip() -> Option<TestHost> {
     device_with(validation_asked_for())
+}
+
+/// As [`device_or_skip`], with the queue and the version of Vulkan of these options.
+///
+/// # Panics
+/// As [`device_or_skip`].
+pub fn device_of(options: &HostOptions) -> Option<TestHost> {
+    let HostOptions { queue, newest_version, .. } = *options;
+    let options = HostOptions { queue, newest_version, ..test_options(validation_asked_for()) };
+    let host = made_or_skip(Host::new(options))?;
+    Some(TestHost { log: host.message_log(), host: Some(host) })
 }
 
 fn validation_asked_for() -> Validation {
@@ -144,7 +106,7 @@ fn test_options(validation: Validation) -> HostOptions {
     HostOptions { device: std::env::var("AREALIGHT_DEVICE").ok(), validation, ..HostOptions::default() }
 }
 
-/// The file of the driver whose compiler a test asks ([`crate::host::null_hardware`]). `None` where it is not
+/// The file of the driver whose compiler a test asks ([`crate::null_hardware`]). `None` where it is not
 /// installed: return then. A test that runs says so by [`ran`].
 ///
 /// # Panics
