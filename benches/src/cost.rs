@@ -4,14 +4,13 @@
 //! ratio to a yardstick in the same round. All read the same quads, once each.
 
 use crate::school::School;
+use crate::table::Table;
 use arealight::FormFactor;
 use arealight::kernels::Kernel;
-use arealight_engine::host::{Buffer, Host};
-use arealight_engine::{BoundSet, EngineError, Passes, SharedPass};
+use arealight_engine::host::Host;
+use arealight_engine::{EngineError, ListPass, Passes};
 use arealight_vk::Resource;
 use serde::Serialize;
-use std::fmt::Write as _;
-use std::time::Instant;
 
 /// A quad's form factor many times over.
 pub static FORM_FACTOR_COST: Kernel =
@@ -80,31 +79,8 @@ const WORK_ITEMS: usize = 4096;
 const REPEATS: u32 = 256;
 
 struct Run {
-    pass: SharedPass,
-    set: BoundSet,
-    results: Buffer,
+    list: ListPass<f32, ()>,
     seconds: Vec<f64>,
-}
-
-impl Run {
-    fn new(passes: &Passes, vertices: &Buffer, id: u32) -> Result<Self, EngineError> {
-        let pass = passes.pass(&FORM_FACTOR_COST, &[(0, id), (1, REPEATS)])?;
-        let results = passes.host().storage_buffer("results", &vec![f32::NAN; WORK_ITEMS])?;
-        let resources = [vertices, &results].map(|buffer| Resource::buffer(buffer.handle()));
-        // SAFETY: The caller keeps the vertices, and this the results, until submissions are waited for.
-        let set = unsafe { passes.bind(&pass, &resources) }?;
-        Ok(Self { pass, set, results, seconds: Vec::new() })
-    }
-
-    /// One dispatch; GPU time, or wall time where the queue has no timestamps.
-    fn once(&self, host: &Host) -> Result<f64, EngineError> {
-        let start = Instant::now();
-        let took = host.try_submit_timed(|commands| {
-            // SAFETY: `commands` is being recorded, outside a render pass.
-            unsafe { self.set.record(&self.pass, commands, &(), [WORK_ITEMS as u32, 1, 1]) }
-        })?;
-        Ok(took.unwrap_or_else(|| start.elapsed()).as_secs_f64())
-    }
 }
 
 /// Measures every method in `rounds` rounds, after one that warms up.
@@ -116,11 +92,15 @@ pub fn measure(host: &Host, rounds: usize) -> Result<Vec<Cost>, EngineError> {
     let vertices = host.storage_buffer("vertices", &quads())?;
     let mut runs = Vec::new();
     for method in METHODS {
-        runs.push(Run::new(&passes, &vertices, method.id)?);
+        let kernel = (&FORM_FACTOR_COST, &[(0, method.id), (1, REPEATS)][..]);
+        let inputs = [Resource::buffer(vertices.handle())];
+        // SAFETY: The vertices live until this returns.
+        let list = unsafe { passes.over_list(kernel, &inputs, (), WORK_ITEMS) }?;
+        runs.push(Run { list, seconds: vec![] });
     }
     for round in 0..=rounds {
         for run in &mut runs {
-            let seconds = run.once(host)?;
+            let seconds = run.list.run()?.as_secs_f64();
             if round > 0 {
                 run.seconds.push(seconds);
             }
@@ -129,7 +109,7 @@ pub fn measure(host: &Host, rounds: usize) -> Result<Vec<Cost>, EngineError> {
     let yardstick = runs[0].seconds.clone();
     let cost = |(method, run): (&CostMethod, &Run)| {
         let ratios: Vec<f64> = run.seconds.iter().zip(&yardstick).map(|(a, b)| a / b).collect();
-        let means: Vec<f32> = run.results.download()?;
+        let means = run.list.results()?;
         Ok(Cost {
             method: method.name,
             nanoseconds: quantile(&run.seconds, 0.5) * 1e9 / (WORK_ITEMS as f64 * f64::from(REPEATS)),
@@ -172,16 +152,11 @@ fn quads() -> Vec<[f32; 4]> {
 
 /// The costs as a Markdown table.
 pub fn markdown(costs: &[Cost]) -> String {
-    let mut text = String::from(
-        "| form factor of a quad | error promised | time, clipless = 1 | quartiles |\n|---|---|---|---|\n",
-    );
-    for (cost, method) in costs.iter().zip(METHODS) {
+    let row = |(cost, method): (&Cost, &CostMethod)| {
         let [low, high] = cost.quartiles;
-        let _ = writeln!(
-            text,
-            "| {} | {} | {:.2} | {low:.2} to {high:.2} |",
-            cost.method, method.promise, cost.ratio
-        );
-    }
-    text
+        let times = [format!("{:.2}", cost.ratio), format!("{low:.2} to {high:.2}")];
+        [cost.method, method.promise].map(str::to_owned).into_iter().chain(times).collect()
+    };
+    let heads = ["form factor of a quad", "error promised", "time, clipless = 1", "quartiles"];
+    Table::new(&heads, costs.iter().zip(METHODS).map(row)).to_markdown()
 }

@@ -4,7 +4,7 @@ use crate::method::Method;
 use arealight::kernels::Kernel;
 use arealight_cases::hard::HardCase;
 use arealight_engine::host::Host;
-use arealight_engine::{EngineError, Passes, SharedPass};
+use arealight_engine::{EngineError, Passes};
 use arealight_vk::Resource;
 use bytemuck::{Pod, Zeroable};
 
@@ -37,7 +37,7 @@ pub static FORM_FACTOR: Kernel = Kernel::new("form_factor", include_bytes!("../s
 
 /// The kernel on a device, once for each method.
 pub struct FormFactorKernel {
-    pipelines: Vec<SharedPass>,
+    methods: Vec<u32>,
     passes: Passes,
 }
 
@@ -48,9 +48,11 @@ impl FormFactorKernel {
     /// [`EngineError`] where the device is too old or out of memory.
     pub fn new(host: &Host, methods: &[&Method]) -> Result<Self, EngineError> {
         let passes = Passes::new(host.clone())?;
-        let pass = |method: &&Method| passes.pass(&FORM_FACTOR, &[(METHOD, method.id)]);
-        let pipelines = methods.iter().map(pass).collect::<Result<_, EngineError>>()?;
-        Ok(Self { pipelines, passes })
+        let methods: Vec<u32> = methods.iter().map(|method| method.id).collect();
+        for method in &methods {
+            passes.pass(&FORM_FACTOR, &[(METHOD, *method)])?;
+        }
+        Ok(Self { methods, passes })
     }
 
     /// The bits of each case's form factor, for each method in turn. Bits, since a conversion may hide a NaN.
@@ -60,22 +62,17 @@ impl FormFactorKernel {
     pub fn run(&self, cases: &[HardCase]) -> Result<Vec<Vec<u32>>, EngineError> {
         let (polygons, offsets) = pack(cases);
         let host = self.passes.host();
-        let polygons = host.storage_buffer("polygons", &polygons)?;
-        let offsets = host.storage_buffer("offsets", &offsets)?;
+        let inputs = [host.storage_buffer("polygons", &polygons)?, host.storage_buffer("offsets", &offsets)?];
+        let resources = [&inputs[0], &inputs[1]].map(|buffer| Resource::buffer(buffer.handle()));
         let constants = FormFactorConstants { polygon_count: cases.len() as u32 };
-        let run = |pass: &SharedPass| {
-            // What is not written stays NaN
-            let results = host.storage_buffer("results", &vec![u32::MAX; cases.len()])?;
-            let resources = [&polygons, &offsets, &results].map(|buffer| Resource::buffer(buffer.handle()));
-            // SAFETY: The buffers live until the submission below was waited for.
-            let set = unsafe { self.passes.bind(pass, &resources) }?;
-            host.try_submit(|commands| {
-                // SAFETY: `commands` is being recorded, outside a render pass.
-                unsafe { set.record(pass, commands, &constants, [constants.polygon_count, 1, 1]) }
-            })?;
-            Ok(results.download()?)
+        let run = |method: &u32| {
+            let kernel = (&FORM_FACTOR, &[(METHOD, *method)][..]);
+            // SAFETY: The inputs live until this returns.
+            let list = unsafe { self.passes.over_list(kernel, &resources, constants, cases.len()) }?;
+            list.run()?;
+            list.results()
         };
-        self.pipelines.iter().map(run).collect()
+        self.methods.iter().map(run).collect()
     }
 }
 

@@ -19,7 +19,7 @@
 //! | [`shape_stability`] | families of hard shapes on a device, judged |
 //! | [`materials`] | the error of each material of a scene against the reference |
 //! | [`shadows`] | how far a picture with shadows is from the reference |
-//! | [`shadow_levels`] | the error and the time of every level of shadows, beside area sampling |
+//! | [`shadow_levels`] | the error and the time of every level of shadows |
 //! | [`shadow_motion`] | the error of shadows in films, frame by frame |
 //! | [`sections`] | the sections of documents that commands write |
 //! | [`report`] | what came of it: as text, as Markdown |

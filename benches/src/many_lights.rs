@@ -244,10 +244,7 @@ impl ManyLights {
                 error(row.largest),
             ]
         };
-        Table {
-            heads: heads.into_iter().map(String::from).collect(),
-            rows: self.rows.iter().map(row).collect(),
-        }
+        Table::new(&heads, self.rows.iter().map(row))
     }
 
     /// For a terminal.

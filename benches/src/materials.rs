@@ -1,6 +1,7 @@
 //! The error of each material of a scene: its picture against the Monte Carlo reference, by material.
 
 use crate::shadow_levels::pictures::Pictures;
+use crate::table::Table;
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, LightTable, Plane, Quality, SpecularLobes};
 use arealight_engine::host::{Host, Usage};
@@ -10,7 +11,6 @@ use arealight_vk::TableFormat;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
-use std::fmt::Write as _;
 
 /// What to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -222,41 +222,40 @@ impl MaterialErrors {
 
     /// The table.
     pub fn to_text(&self) -> String {
-        let mut text = format!("{}: {} samples a pixel, two references\n\n", self.device, self.samples);
-        text += "material              pixels  mean / reference  RMSE / mean  by two lobes  half \
-        vectors  reference's noise\n";
-        for MaterialResult { name, pixels, ratio, error, two_lobes, half_vectors, noise, .. } in
-            &self.materials
-        {
-            let [error, two_lobes, half_vectors, noise] =
-                [error, two_lobes, half_vectors, noise].map(|part| 100.0 * part);
-            let _ = writeln!(
-                text,
-                "{name:20} {pixels:7}  {ratio:16.4}  {error:9.2} %  {two_lobes:10.2} %  {half_vectors:10.2} \
-                %  {noise:15.2} %"
-            );
-        }
-        text
+        format!(
+            "{}: {} samples a pixel, two references\n\n{}",
+            self.device,
+            self.samples,
+            self.table(true).to_text()
+        )
+    }
+
+    /// A row for each material: of a terminal's table the pixels and the noise, of a document's the effects.
+    fn table(&self, is_text: bool) -> Table {
+        let percent = |part: &f64| format!("{:.2} %", 100.0 * part);
+        let row = |found: &MaterialResult| {
+            let MaterialResult { name, effects, ratio, error, two_lobes, half_vectors, noise, .. } = found;
+            let second = if is_text { found.pixels.to_string() } else { effects.clone() };
+            let mut cells = vec![name.clone(), second, format!("{ratio:.4}")];
+            cells.extend([error, two_lobes, half_vectors].map(percent));
+            cells.extend(is_text.then(|| percent(noise)));
+            cells
+        };
+        let mut heads = vec!["material", if is_text { "pixels" } else { "effects" }];
+        heads.extend(["mean over reference", "RMSE over mean", "by two lobes", "over half vectors"]);
+        heads.extend(is_text.then_some("reference's noise"));
+        Table::new(&heads, self.materials.iter().map(row))
     }
 
     /// The same as Markdown, with the command that repeats it.
     pub fn to_markdown(&self, command: &str) -> String {
-        let mut text = format!(
+        format!(
             "By `{command}` on {}: the exact level, by one specular lobe, by two and over half vectors, \
             beside Monte Carlo of the true BRDF, without shadows. The references' noise is taken out of the \
-            squares.\n\n",
-            self.device
-        );
-        text += "| material | effects | mean over reference | RMSE over mean | by two lobes | over half \
-        vectors |\n|---|---|---|---|---|---|\n";
-        for MaterialResult { name, effects, ratio, error, two_lobes, half_vectors, .. } in &self.materials {
-            let [error, two_lobes, half_vectors] = [error, two_lobes, half_vectors].map(|part| 100.0 * part);
-            let _ = writeln!(
-                text,
-                "| {name} | {effects} | {ratio:.4} | {error:.2} % | {two_lobes:.2} % | {half_vectors:.2} % |"
-            );
-        }
-        text
+            squares.\n\n{}",
+            self.device,
+            self.table(false).to_markdown()
+        )
     }
 }
 

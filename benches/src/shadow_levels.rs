@@ -1,13 +1,7 @@
-//! What shadows err at each level, and what they take: beside the Monte Carlo reference, and beside area
-//! sampling with as many rays.
+//! What shadows err at each level against the Monte Carlo reference, and what they take.
 
-mod area_sampling;
-mod pcss;
 pub(crate) mod pictures;
 mod text;
-
-pub use area_sampling::AREA_SAMPLING;
-pub use pcss::PCSS;
 
 use crate::ladder::Spread;
 use crate::ladder::frame::processors;
@@ -15,8 +9,8 @@ use crate::shadows::{ShadowErrors, ShadowTruth, SizeError, part_found};
 use crate::textures::{clocked, is_software};
 use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory};
 use arealight::{Effects, LightTable};
-use arealight_engine::host::{Buffer, Host};
-use arealight_engine::{Engine, EngineError, OtherShadows, Reference, SceneRenderer, ShadowedView};
+use arealight_engine::host::Host;
+use arealight_engine::{Engine, EngineError, Reference, SceneRenderer, ShadowedView};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_vk::{ShadowStage, TableFormat};
 use glam::{DVec3, Vec3};
@@ -73,16 +67,11 @@ pub enum Level {
     Filtered(u32),
     /// So many rays a pixel, filtered over the frames before too: [`FRAMES`] at rest.
     History(u32),
-    /// So many rays a pixel, by [`AREA_SAMPLING`]. For lights that are convex quads without a texture.
-    AreaSampling(u32),
-    /// [`PCSS`] by so many texels for the depth of blockers, and for what arrives. For one light, a convex
-    /// quad that shines to one side.
-    Pcss(u32, u32),
 }
 
 impl Level {
     /// Every level, in the order of the tables.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 9] = [
         Self::Off,
         Self::Rays(1),
         Self::Rays(2),
@@ -92,31 +81,23 @@ impl Level {
         Self::Filtered(4),
         Self::History(1),
         Self::History(2),
-        Self::AreaSampling(1),
-        Self::AreaSampling(2),
-        Self::AreaSampling(4),
-        Self::AreaSampling(16),
-        Self::Pcss(16, 32),
-        Self::Pcss(256, 1024),
     ];
 
     /// How many rays a pixel has.
     pub fn rays(self) -> u32 {
         match self {
-            Self::Off | Self::Pcss(..) => 0,
-            Self::Rays(rays) | Self::Filtered(rays) | Self::History(rays) | Self::AreaSampling(rays) => rays,
+            Self::Off => 0,
+            Self::Rays(rays) | Self::Filtered(rays) | Self::History(rays) => rays,
         }
     }
 
-    /// As `arealight render --shadows` takes it; what is only compared with by its name.
+    /// As `arealight render --shadows` takes it.
     pub fn name(self) -> String {
         match self {
             Self::Off => "off".into(),
             Self::Rays(rays) => format!("rays:{rays}"),
             Self::Filtered(rays) => format!("filtered:{rays}"),
             Self::History(rays) => format!("filtered:{rays}, history"),
-            Self::AreaSampling(rays) => format!("area sampling, {rays}"),
-            Self::Pcss(search, filter) => format!("PCSS, {search} + {filter} texels"),
         }
     }
 }
@@ -249,25 +230,14 @@ fn run_scene(
         pictures: Pictures::new(renderer)?,
         scene: &buffers,
         surfaces: scene.effects() & Effects::SURFACES,
-        shadow_map: engine
-            .storage("shadow map", &vec![0.0_f32; (pcss::MAP_SIZE * pcss::MAP_SIZE) as usize])?,
     };
     let lights = view.pictures.renderer.lights();
     let samples = options.samples_under(lights.light_count + lights.shape_count);
     let truth = Truth::new(&mut view, samples, progress)?;
 
-    let are_quads = lights.quad_count == lights.light_count && lights.shape_count == 0;
-    let is_one_sided_quad = are_quads && matches!(&*scene.lights, [light] if !light.two_sided);
     let mut levels = vec![];
     for level in Level::ALL {
-        let is_possible = match level {
-            Level::AreaSampling(_) => are_quads,
-            Level::Pcss(..) => is_one_sided_quad,
-            _ => true,
-        };
-        if is_possible {
-            levels.push(view.run(level, &truth, options.rounds)?);
-        }
+        levels.push(view.run(level, &truth, options.rounds)?);
         progress(1);
     }
     Ok(SceneResult {
@@ -284,7 +254,6 @@ fn run_scene(
 /// The mean of two references, and its noise.
 struct Truth {
     mean: ShadowTruth,
-    unshadowed: Vec<DVec3>,
     noise: ShadowErrors,
 }
 
@@ -314,7 +283,7 @@ impl Truth {
         let one = ShadowTruth::new(shadowed.clone(), &unshadowed)?;
         let parts: Vec<f64> = one.parts.iter().map(|part| part.unwrap_or(1.0)).collect();
         let noise = truth.errors(&parts, &shadowed)?;
-        Ok(Self { mean: truth, unshadowed: mean_unshadowed, noise })
+        Ok(Self { mean: truth, noise })
     }
 
     fn errors(&self, shadows: &[f64], radiance: &[DVec3]) -> Result<ShadowErrors, SizeError> {
@@ -328,8 +297,6 @@ struct View<'a> {
     pictures: Pictures<'a>,
     scene: &'a SceneBuffers,
     surfaces: Effects,
-    /// Of [`PCSS`].
-    shadow_map: Buffer,
 }
 
 /// Seconds of each pass that a frame has: of [`PassTimes`].
@@ -344,12 +311,9 @@ impl View<'_> {
         // A picture, by which pipelines are made too
         let passes = self.passes(level)?;
         let radiance = self.picture(level, passes.as_ref())?;
-        let unshadowed = match (&passes, level) {
-            // It knows none
-            (_, Level::AreaSampling(_)) => truth.unshadowed.clone(),
-            (_, Level::Pcss(..)) => self.picture(Level::Off, None)?,
-            (Some(passes), _) => pictures::unshadowed(passes)?,
-            _ => radiance.clone(),
+        let unshadowed = match &passes {
+            Some(passes) => pictures::unshadowed(passes)?,
+            None => radiance.clone(),
         };
         let pixels = radiance.iter().zip(&unshadowed);
         let shadows: Vec<f64> = pixels.map(|(with, without)| part_found(*with, *without)).collect();
@@ -357,7 +321,7 @@ impl View<'_> {
         // Its time
         let mut seconds = vec![];
         for round in 0..rounds {
-            seconds.push(self.shade(level, passes.as_ref(), FRAMES + round)?);
+            seconds.push(self.shade(passes.as_ref(), FRAMES + round)?);
         }
         let processors = if is_software(self.host) { processors() } else { 1.0 };
         let time = |pass: usize| {
@@ -382,8 +346,6 @@ impl View<'_> {
             Level::Rays(rays) => (rays, (ShadowFilter::Off, none)),
             Level::Filtered(rays) => (rays, (gather, none)),
             Level::History(rays) => (rays, (gather, ShadowHistory::Camera)),
-            // Of the blockers alone
-            Level::AreaSampling(_) | Level::Pcss(..) => (1, (ShadowFilter::Off, none)),
         };
         let options = self.options(rays, Output::default());
         self.pictures.renderer.shadowed(self.scene, options, filter).map(Some)
@@ -394,41 +356,17 @@ impl View<'_> {
         let frames = if matches!(level, Level::History(_)) { FRAMES } else { 1 };
         for frame in 0..frames {
             self.pictures.begin()?;
-            self.shade(level, passes, frame)?;
+            self.shade(passes, frame)?;
         }
         self.pictures.radiance()
     }
 
-    fn shade(
-        &mut self,
-        level: Level,
-        passes: Option<&ShadowedView>,
-        seed: u32,
-    ) -> Result<Seconds, EngineError> {
+    fn shade(&mut self, passes: Option<&ShadowedView>, seed: u32) -> Result<Seconds, EngineError> {
         let plain = self.options(0, Output::Add);
         let (host, renderer) = (self.host, &mut self.pictures.renderer);
         let Some(passes) = passes else {
             return Ok([Some(clocked(host, || renderer.shade_as(plain))?), None, None, None]);
         };
-        if let Level::AreaSampling(rays) = level {
-            let rays = [(area_sampling::RAYS, rays)];
-            let kernel = OtherShadows::new(&AREA_SAMPLING, &rays);
-            let took = clocked(host, || renderer.shade_shadowed_by(passes, &kernel, seed))?;
-            return Ok([None, Some(took), None, None]);
-        }
-        if let Level::Pcss(search, filter) = level {
-            let taps = [(pcss::SEARCH_TAPS, search), (pcss::FILTER_TAPS, filter)];
-            let by = OtherShadows { buffer: Some(&self.shadow_map), ..OtherShadows::new(&PCSS, &taps) };
-            let map = OtherShadows {
-                specialization: &[(pcss::MAKES_MAP, 1)],
-                items: Some([pcss::MAP_SIZE; 2]),
-                ..by
-            };
-            renderer.shade_shadowed_by(passes, &map, seed)?;
-            let shade = clocked(host, || renderer.shade_as(plain))?;
-            let took = clocked(host, || renderer.shade_shadowed_by(passes, &by, seed))?;
-            return Ok([Some(shade), None, None, Some(took)]);
-        }
         let mut seconds = [Some(clocked(host, || renderer.shade_picking(passes, seed))?), None, None, None];
         for stage in passes.stages() {
             let place = match stage {

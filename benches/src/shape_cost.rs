@@ -6,16 +6,15 @@
 
 use crate::cost::quantile;
 use crate::shapes::{SHAPES, ShapeArguments, ShapeFunction, ellipse_arguments, tube_arguments};
+use crate::table::Table;
 use arealight_cases::hard::ellipse::Family;
 use arealight_engine::host::{Buffer, Host};
-use arealight_engine::{BoundSet, EngineError, Passes, SharedPass};
+use arealight_engine::{EngineError, ListPass, Passes};
 use arealight_oracle::ellipse::{Ellipse, form_factor};
 use arealight_oracle::tube::{Ends, Tube};
 use arealight_vk::Resource;
 use glam::DMat3;
 use serde::Serialize;
-use std::fmt::Write as _;
-use std::time::Instant;
 
 /// A way to a shape's form factor.
 #[derive(Debug, Clone, Copy)]
@@ -124,9 +123,7 @@ fn arguments(kind: Kind) -> Vec<ShapeArguments> {
 }
 
 struct Run {
-    pass: SharedPass,
-    set: BoundSet,
-    results: Buffer,
+    list: ListPass<[f32; 4], u32>,
     seconds: Vec<f64>,
     _inputs: [Buffer; 2],
 }
@@ -139,23 +136,12 @@ impl Run {
             host.storage_buffer("arguments", &arguments(method.kind))?,
             host.storage_buffer("ends", &[ends; WORK_ITEMS])?,
         ];
-        let results = host.storage_buffer("results", &vec![[f32::NAN; 4]; WORK_ITEMS])?;
         let constants = [(0, method.function as u32), (1, method.level), (2, method.choice), (3, repeats)];
-        let pass = passes.pass(&SHAPES, &constants)?;
-        let resources = [&inputs[0], &inputs[1], &results].map(|buffer| Resource::buffer(buffer.handle()));
-        // SAFETY: This keeps the buffers until its submissions are waited for.
-        let set = unsafe { passes.bind(&pass, &resources) }?;
-        Ok(Self { pass, set, results, seconds: Vec::new(), _inputs: inputs })
-    }
-
-    /// One dispatch; GPU time, or wall time where the queue has no timestamps.
-    fn once(&self, host: &Host) -> Result<f64, EngineError> {
-        let start = Instant::now();
-        let took = host.try_submit_timed(|commands| {
-            // SAFETY: `commands` is being recorded, outside a render pass.
-            unsafe { self.set.record(&self.pass, commands, &(WORK_ITEMS as u32), [WORK_ITEMS as u32, 1, 1]) }
-        })?;
-        Ok(took.unwrap_or_else(|| start.elapsed()).as_secs_f64())
+        let resources = [&inputs[0], &inputs[1]].map(|buffer| Resource::buffer(buffer.handle()));
+        // SAFETY: This keeps the inputs.
+        let list =
+            unsafe { passes.over_list((&SHAPES, &constants), &resources, WORK_ITEMS as u32, WORK_ITEMS) }?;
+        Ok(Self { list, seconds: Vec::new(), _inputs: inputs })
     }
 }
 
@@ -169,7 +155,7 @@ pub fn measure(host: &Host, rounds: usize) -> Result<Vec<ShapeCost>, EngineError
         METHODS.iter().map(|method| Run::new(&passes, method, REPEATS)).collect::<Result<Vec<_>, _>>()?;
     for round in 0..=rounds {
         for run in &mut runs {
-            let seconds = run.once(host)?;
+            let seconds = run.list.run()?.as_secs_f64();
             if round > 0 {
                 run.seconds.push(seconds);
             }
@@ -180,7 +166,7 @@ pub fn measure(host: &Host, rounds: usize) -> Result<Vec<ShapeCost>, EngineError
     let cost = |(method, run): (&ShapeMethod, &Run)| {
         let ratios: Vec<f64> = run.seconds.iter().zip(&exact).map(|(a, b)| a / b).collect();
         let error = match method.kind {
-            Kind::JudgedDisk => Some(error(host, &passes, method, &truth)?),
+            Kind::JudgedDisk => Some(error(&passes, method, &truth)?),
             _ => None,
         };
         Ok(ShapeCost {
@@ -194,15 +180,10 @@ pub fn measure(host: &Host, rounds: usize) -> Result<Vec<ShapeCost>, EngineError
 }
 
 /// The errors of a method, evaluated once a disk.
-fn error(
-    host: &Host,
-    passes: &Passes,
-    method: &ShapeMethod,
-    truth: &[f64],
-) -> Result<ShapeError, EngineError> {
+fn error(passes: &Passes, method: &ShapeMethod, truth: &[f64]) -> Result<ShapeError, EngineError> {
     let run = Run::new(passes, method, 1)?;
-    run.once(host)?;
-    let results: Vec<[f32; 4]> = run.results.download()?;
+    run.list.run()?;
+    let results = run.list.results()?;
     let errors: Vec<f64> =
         results.iter().zip(truth).map(|(found, truth)| (f64::from(found[0]) - truth).abs()).collect();
     let finite = || errors.iter().filter(|error| error.is_finite());
@@ -215,20 +196,18 @@ fn error(
 
 /// The costs as a Markdown table.
 pub fn markdown(costs: &[ShapeCost]) -> String {
-    let mut text = String::from(
-        "| form factor | time, exact disk = 1 | quartiles | RMS error | largest error \
-        |\n|---|---|---|---|---|\n",
-    );
-    for cost in costs {
+    let row = |cost: &ShapeCost| {
         let [low, high] = cost.quartiles;
-        let error = cost.error.map_or_else(
-            || "| |".to_owned(),
-            |error| match error.not_finite {
-                0 => format!("{:.0e} | {:.0e} |", error.rms, error.largest),
-                count => format!("{:.0e} | {:.0e}, {count} not finite |", error.rms, error.largest),
-            },
-        );
-        let _ = writeln!(text, "| {} | {:.2} | {low:.2} to {high:.2} | {error}", cost.method, cost.ratio);
-    }
-    text
+        let errors = cost.error.map_or_else(Default::default, |error| {
+            let not_finite = match error.not_finite {
+                0 => String::new(),
+                count => format!(", {count} not finite"),
+            };
+            [format!("{:.0e}", error.rms), format!("{:.0e}{not_finite}", error.largest)]
+        });
+        let times = [format!("{:.2}", cost.ratio), format!("{low:.2} to {high:.2}")];
+        std::iter::once(cost.method.to_owned()).chain(times).chain(errors).collect()
+    };
+    let heads = ["form factor", "time, exact disk = 1", "quartiles", "RMS error", "largest error"];
+    Table::new(&heads, costs.iter().map(row)).to_markdown()
 }

@@ -4,6 +4,7 @@
 mod family;
 
 use crate::shapes::{SHAPES, ShapeArguments, ShapeFunction};
+use crate::table::Table;
 use arealight_engine::host::Host;
 use arealight_engine::{EngineError, Passes};
 use arealight_oracle::stream::Stream;
@@ -164,44 +165,42 @@ fn evaluate(
     ends: &[u32],
 ) -> Result<Vec<f32>, EngineError> {
     let host = passes.host();
-    let arguments_buffer = host.storage_buffer("arguments", arguments)?;
-    let ends = host.storage_buffer("ends", ends)?;
-    // What is not written stays NaN
-    let results = host.storage_buffer("results", &vec![[f32::NAN; 4]; arguments.len()])?;
-    let pass = passes.pass(&SHAPES, &[(0, function as u32), (1, level), (2, 0)])?;
-    let resources = [&arguments_buffer, &ends, &results].map(|buffer| Resource::buffer(buffer.handle()));
-    // SAFETY: The buffers live until the submission below was waited for.
-    let set = unsafe { passes.bind(&pass, &resources) }?;
-    let count = arguments.len() as u32;
-    host.try_submit(|commands| {
-        // SAFETY: `commands` is being recorded, outside a render pass.
-        unsafe { set.record(&pass, commands, &count, [count, 1, 1]) }
-    })?;
-    let results: Vec<[f32; 4]> = results.download()?;
-    Ok(results.into_iter().map(|result| result[0]).collect())
+    let inputs = [host.storage_buffer("arguments", arguments)?, host.storage_buffer("ends", ends)?];
+    let kernel = (&SHAPES, &[(0, function as u32), (1, level), (2, 0)][..]);
+    let resources = [&inputs[0], &inputs[1]].map(|buffer| Resource::buffer(buffer.handle()));
+    let count = arguments.len();
+    // SAFETY: The inputs live until this returns.
+    let list = unsafe { passes.over_list::<[f32; 4], u32>(kernel, &resources, count as u32, count) }?;
+    list.run()?;
+    Ok(list.results()?.into_iter().map(|result| result[0]).collect())
 }
 
 /// The rows as a Markdown table, whose heads say what is in it; after it the worst case of each family that
 /// broke its promise.
 pub fn markdown(rows: &[ShapeRow]) -> String {
-    let mut text = String::from(
-        "| family | largest error | promised | out of [0, 1] | verdict | published: not finite | its largest \
-        error |\n\
-         |---|---|---|---|---|---|---|\n",
-    );
-    for row in rows {
-        let error = row.largest_error.map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}"));
-        let promise = row.largest_error.map_or_else(|| "-".to_owned(), |_| format!("{:.0e}", row.promise));
-        let published = row
-            .published
-            .map_or_else(|| "| |".to_owned(), |(count, error)| format!("| {count} | {error:.0e} |"));
-        let verdict = if row.is_kept() { "kept" } else { "**BROKEN**" };
-        let _ = writeln!(
-            text,
-            "| {} | {error} | {promise} | {} | {verdict} {published}",
-            row.family, row.out_of_range
-        );
-    }
+    let row = |row: &ShapeRow| {
+        let or_none = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
+        let published = row.published.map(|(count, error)| [count.to_string(), format!("{error:.0e}")]);
+        let mut cells = vec![
+            row.family.clone(),
+            or_none(row.largest_error.map(|error| format!("{error:.1e}"))),
+            or_none(row.largest_error.map(|_| format!("{:.0e}", row.promise))),
+            row.out_of_range.to_string(),
+            if row.is_kept() { "kept" } else { "**BROKEN**" }.to_owned(),
+        ];
+        cells.extend(published.unwrap_or_default());
+        cells
+    };
+    let heads = [
+        "family",
+        "largest error",
+        "promised",
+        "out of [0, 1]",
+        "verdict",
+        "published: not finite",
+        "its largest error",
+    ];
+    let mut text = Table::new(&heads, rows.iter().map(row)).to_markdown();
     for row in rows {
         let Some(worst) = &row.shortfall else { continue };
         let _ = writeln!(

@@ -9,6 +9,11 @@ pub(crate) struct Table {
 }
 
 impl Table {
+    /// A table of those heads.
+    pub fn new(heads: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Self {
+        Self { heads: heads.iter().map(ToString::to_string).collect(), rows: rows.into_iter().collect() }
+    }
+
     pub fn to_text(&self) -> String {
         let width = |column: usize| {
             let all = self.rows.iter().chain([&self.heads]);

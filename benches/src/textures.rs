@@ -4,6 +4,7 @@
 //! threads: on a shared machine the clock tells who else is there, and more so in the longer run.
 
 use crate::cost::quantile;
+use crate::table::Table;
 use arealight::kernels::Kernel;
 use arealight::{PyramidSize, TexturePart};
 use arealight_engine::host::{Host, Image, ImageDescription, Usage};
@@ -13,7 +14,6 @@ use arealight_engine::{
 use arealight_vk::Resource;
 use ash::vk;
 use serde::Serialize;
-use std::fmt::Write as _;
 use std::time::Instant;
 
 /// A level of a chain of mips.
@@ -176,21 +176,25 @@ fn processor_seconds() -> Option<f64> {
 
 /// The costs as a Markdown table.
 pub fn markdown(costs: &[TextureCost]) -> String {
-    let mut text = String::from(
-        "| texels | plain mips, ms per megapixel | pyramid | time, mips = 1 | quartiles | memory, source = 1 \
-        |\n\
-         |---|---|---|---|---|---|\n",
-    );
-    for cost in costs {
+    let row = |cost: &TextureCost| {
         let [mips, pyramid] = cost.milliseconds.map(|time| time * 1e6 / f64::from(cost.side).powi(2));
-        let [low, high] = cost.quartiles;
-        let _ = writeln!(
-            text,
-            "| {side} x {side} | {mips:.1} | {pyramid:.1} | {:.2} | {low:.2} to {high:.2} | {:.2} |",
-            cost.ratio,
-            cost.memory,
-            side = cost.side,
-        );
-    }
-    text
+        let ([low, high], side) = (cost.quartiles, cost.side);
+        vec![
+            format!("{side} x {side}"),
+            format!("{mips:.1}"),
+            format!("{pyramid:.1}"),
+            format!("{:.2}", cost.ratio),
+            format!("{low:.2} to {high:.2}"),
+            format!("{:.2}", cost.memory),
+        ]
+    };
+    let heads = [
+        "texels",
+        "plain mips, ms per megapixel",
+        "pyramid",
+        "time, mips = 1",
+        "quartiles",
+        "memory, source = 1",
+    ];
+    Table::new(&heads, costs.iter().map(row)).to_markdown()
 }

@@ -256,11 +256,7 @@ pub fn markdown(frames: &[TiledFrame]) -> String {
             format!("{:.1e}", frame.error[1]),
         ]
     };
-    let table = Table {
-        heads: heads.into_iter().map(String::from).collect(),
-        rows: frames.iter().map(row).collect(),
-    };
-    let mut text = table.to_markdown();
+    let mut text = Table::new(&heads, frames.iter().map(row)).to_markdown();
     text.push('\n');
     for frame in frames {
         let classes: Vec<String> = frame

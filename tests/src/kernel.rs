@@ -71,22 +71,11 @@ impl TestEngine {
         inputs: &[Resource],
         count: usize,
     ) -> Vec<R> {
-        let host = self.host();
-        // What is not written stays NaN
-        let unwritten = vec![u32::MAX; count * size_of::<R>() / 4];
-        let results = host.storage_buffer("results", &unwritten).expect("memory");
-        let resources = [inputs, &[Resource::buffer(results.handle())]].concat();
-        let pass = self.passes().pass(kernel, specialization).expect("a pipeline");
-        // SAFETY: Host::submit waits, and the resources live until then.
-        unsafe {
-            let set = self.passes().bind(&pass, &resources).expect("the resources fit");
-            let invocations = [count as u32, 1, 1];
-            host.submit(|commands| {
-                set.record(&pass, commands, &(count as u32), invocations).expect("it records");
-            })
-            .expect("it runs");
-        }
-        results.download().expect("the results come back")
+        // SAFETY: The run waits, and the resources live until then.
+        let list = unsafe { self.passes().over_list((kernel, specialization), inputs, count as u32, count) };
+        let list = list.expect("the resources fit");
+        list.run().expect("it runs");
+        list.results().expect("the results come back")
     }
 
     /// Calls a function of the library.

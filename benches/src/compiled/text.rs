@@ -48,8 +48,7 @@ fn heading(family: &Family) -> String {
 }
 
 fn table(family: &Family) -> Table {
-    let rows = family.rows.iter().map(cells).collect();
-    Table { heads: HEADS.iter().map(|head| (*head).to_owned()).collect(), rows }
+    Table::new(&HEADS, family.rows.iter().map(cells))
 }
 
 fn cells(row: &Measured) -> Vec<String> {

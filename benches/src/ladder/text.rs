@@ -23,11 +23,6 @@ pub fn error_cells(errors: &SplitErrors) -> [String; 8] {
 pub const READS: &str =
     "Yardsticks read each light once for both lobes, in the same loop over the same buffers as ours.";
 
-/// A table of those heads.
-fn table(heads: &[&str], rows: Vec<Vec<String>>) -> Table {
-    Table { heads: heads.iter().map(|head| (*head).to_owned()).collect(), rows }
-}
-
 /// Three digits, and as few zeros as can be.
 pub fn number(value: f64) -> String {
     match value.abs() {
@@ -79,7 +74,7 @@ impl Ladder {
             cells.extend([samples(|equal| equal.error), samples(|equal| equal.time)]);
             cells
         };
-        table(
+        Table::new(
             &[
                 "method",
                 "RMSE",
@@ -95,7 +90,7 @@ impl Ladder {
                 "samples, equal error",
                 "equal time",
             ],
-            self.rows_of(lights).map(row).collect(),
+            self.rows_of(lights).map(row),
         )
     }
 
@@ -110,10 +105,7 @@ impl Ladder {
                 if samples.measured { "measured" } else { "in proportion" }.to_owned(),
             ]
         };
-        table(
-            &["samples", "RMSE", "p99", "worst", "ms", "time is"],
-            self.monte_carlo.iter().map(row).collect(),
-        )
+        Table::new(&["samples", "RMSE", "p99", "worst", "ms", "time is"], self.monte_carlo.iter().map(row))
     }
 
     fn effects(&self) -> Table {
@@ -121,9 +113,9 @@ impl Ladder {
             let used = effect.used.as_ref().map_or_else(|| "-".to_owned(), spread);
             vec![effect.effect.clone(), spread(&effect.on), used]
         };
-        table(
+        Table::new(
             &["effect", "turned on, time without it = 1", "lights that need it, quads = 1"],
-            self.effects.iter().map(row).collect(),
+            self.effects.iter().map(row),
         )
     }
 
@@ -138,7 +130,7 @@ impl Ladder {
             let cells = growths.iter().map(|growth| number(growth.steps[index].1.median));
             std::iter::once(count.to_string()).chain(cells).collect()
         };
-        table(&heads, (0..steps).map(row).collect())
+        Table::new(&heads, (0..steps).map(row))
     }
 
     /// What the numbers are, in words.

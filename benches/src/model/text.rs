@@ -96,7 +96,6 @@ fn shares(scenes: &[Modelled]) -> Table {
 
 /// What each path costs.
 fn paths(costs: &Costs) -> Table {
-    let heads = ["", "ours", "clipless"].map(str::to_owned).to_vec();
     let (ours, clipless) = (&costs.exact, &costs.clipless);
     let both = |name: &str, ours: f64, other: f64| {
         vec![name.to_owned(), format!("{ours:.0}"), format!("{other:.0}")]
@@ -122,7 +121,7 @@ fn paths(costs: &Costs) -> Table {
             rows.push(vec![format!("+ {name}: {path}"), format!("{cost:.0}"), String::new()]);
         }
     }
-    Table { heads, rows }
+    Table::new(&["", "ours", "clipless"], rows)
 }
 
 /// A row a scene and a size of wave, and one of all scenes.
@@ -150,7 +149,7 @@ fn frames(scenes: &[Modelled], costs: &Costs) -> Table {
         let waves: u64 = scenes.iter().map(|scene| scene.counts[wave as usize].waves).sum();
         rows.push(cells(format!("all, waves of {name}"), sum.map(|sum| sum / waves.max(1) as f64)));
     }
-    Table { heads: heads.map(str::to_owned).to_vec(), rows }
+    Table::new(&heads, rows)
 }
 
 fn cells(name: String, cost: [f64; 4]) -> Vec<String> {

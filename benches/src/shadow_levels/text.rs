@@ -14,14 +14,7 @@ of the radiance is the root of its \
 mean square over its mean. The truth is the mean of two Monte Carlo references of the true BRDF, each with \
 and without shadows by the same \
 samples; their noise, measured by their difference, is taken out of the squares. A history is of 16 frames \
-at rest. \
-`area sampling` chooses for each ray a light by its power over its distance squared, and a point of it by \
-area: the same \
-rays through the same blockers, without what is known of the unshadowed radiance. `PCSS` is \
-percentage-closer soft shadows (Fernando 2005): so many \
-texels of a shadow map of 512 x 512 are looked up for the depth of what blocks, and then for how much \
-arrives; its time is in the column of the \
-filter, and that of making the map is not counted.";
+at rest.";
 
 const HEADS: [&str; 11] = [
     "level",
@@ -57,7 +50,7 @@ fn cells(result: &LevelResult) -> Vec<String> {
 
 impl SceneResult {
     fn table(&self) -> Table {
-        Table { heads: HEADS.map(String::from).into(), rows: self.levels.iter().map(cells).collect() }
+        Table::new(&HEADS, self.levels.iter().map(cells))
     }
 
     /// What is seen, and how well it is known.

@@ -33,8 +33,7 @@ impl SceneFilms {
         let heads =
             ["motion, level", "S, RMSE x 100", "in penumbra", "uncovered", "worst frame", "lag, frames"];
         let order = Motion::ALL.iter().flat_map(|motion| Scheme::ALL.map(|scheme| (*motion, scheme)));
-        let rows = order.filter_map(|(motion, scheme)| self.find(motion, scheme)).map(cells).collect();
-        Table { heads: heads.map(String::from).into(), rows }
+        Table::new(&heads, order.filter_map(|(motion, scheme)| self.find(motion, scheme)).map(cells))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Passes on a host: pipelines, and descriptor sets for them.
 
-use crate::host::{DescriptorPool, Host};
+use crate::host::{Buffer, DescriptorPool, Host};
 use crate::{EngineError, Kept};
 use arealight::kernels::Kernel;
 use arealight_vk::{ComputePass, Context, Resource};
@@ -10,7 +10,9 @@ use rayon::prelude::*;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::marker::PhantomData;
 use std::rc::Rc;
+use std::time::{Duration, Instant};
 
 /// A kernel's name, with the values of its specialisation constants.
 type Specialized = (&'static str, Vec<(u32, u32)>);
@@ -126,6 +128,65 @@ impl Passes {
         // SAFETY: The set is new, and the caller keeps the resources.
         unsafe { pass.write_set(set, resources) }?;
         Ok(BoundSet { set, _pool: pool })
+    }
+}
+
+impl Passes {
+    /// A kernel over a list: `count` invocations, with `inputs` bound in turn and a result each at the last
+    /// binding, which stays NaN where nothing is written.
+    ///
+    /// # Errors
+    /// As [`Passes::pass`] and [`Passes::bind`].
+    ///
+    /// # Safety
+    /// The inputs live until the last run.
+    pub unsafe fn over_list<R: Pod, C: Pod>(
+        &self,
+        (kernel, specialization): (&'static Kernel, &[(u32, u32)]),
+        inputs: &[Resource],
+        constants: C,
+        count: usize,
+    ) -> Result<ListPass<R, C>, EngineError> {
+        let pass = self.pass(kernel, specialization)?;
+        let results = self.host.storage_buffer("results", &vec![u32::MAX; count * size_of::<R>() / 4])?;
+        // SAFETY: The caller keeps the inputs, and the list the results.
+        let set = unsafe { self.bind(&pass, &[inputs, &[Resource::buffer(results.handle())]].concat()) }?;
+        let (host, of) = (self.host.clone(), PhantomData);
+        Ok(ListPass { pass, set, results, host, constants, count: count as u32, of })
+    }
+}
+
+/// A kernel over a list: [`Passes::over_list`].
+pub struct ListPass<R, C> {
+    pass: SharedPass,
+    set: BoundSet,
+    results: Buffer,
+    host: Host,
+    constants: C,
+    count: u32,
+    of: PhantomData<R>,
+}
+
+impl<R: Pod, C: Pod> ListPass<R, C> {
+    /// Runs it, and waits: GPU time, or wall time where the queue has no timestamps.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn run(&self) -> Result<Duration, EngineError> {
+        let start = Instant::now();
+        let took = self.host.try_submit_timed(|commands| {
+            // SAFETY: `commands` is being recorded, outside a render pass.
+            unsafe { self.set.record(&self.pass, commands, &self.constants, [self.count, 1, 1]) }
+        })?;
+        Ok(took.unwrap_or_else(|| start.elapsed()))
+    }
+
+    /// What the last run wrote.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn results(&self) -> Result<Vec<R>, EngineError> {
+        Ok(self.results.download()?)
     }
 }
 

@@ -2,8 +2,6 @@
 
 use crate::host::{Buffer, DescriptorPool, Image, ImageDescription, Usage};
 use crate::{Engine, EngineError, Kept, SceneRenderer};
-use arealight::gpu::ShadeConstants;
-use arealight::kernels::Kernel;
 use arealight::plan::{self, Output, ShadeOptions, ShadowFilter, ShadowHistory};
 use arealight::{Blockers, Effects};
 use arealight_scene::{BufferError, SceneBuffers};
@@ -28,27 +26,6 @@ pub struct ShadowedView {
     picks: Buffer,
     history: Buffer,
     blockers: [Buffer; 2],
-}
-
-/// A kernel of another's that shades with shadows. Its bindings have the names of ours; its push constants
-/// are [`ShadeConstants`].
-#[derive(Clone, Copy)]
-pub struct OtherShadows<'a> {
-    /// The kernel.
-    pub kernel: &'static Kernel,
-    /// Its specialisation constants.
-    pub specialization: &'a [(u32, u32)],
-    /// A storage buffer of its own, at `depths`.
-    pub buffer: Option<&'a Buffer>,
-    /// Invocations along x and y; none: the view's pixels.
-    pub items: Option<[u32; 2]>,
-}
-
-impl<'a> OtherShadows<'a> {
-    /// One over the view's pixels, without a buffer of its own.
-    pub fn new(kernel: &'static Kernel, specialization: &'a [(u32, u32)]) -> Self {
-        Self { kernel, specialization, buffer: None, items: None }
-    }
 }
 
 impl ShadowedView {
@@ -262,30 +239,6 @@ impl SceneRenderer<'_> {
             // SAFETY: As in `shade_shadowed`.
             unsafe { view.shadow.record_stage(stage, commands, view.sets[1], &resources, &frame)? };
             Ok(())
-        })
-    }
-
-    /// As [`SceneRenderer::shade`], with shadows, by one kernel of another's: one to compare with.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
-    pub fn shade_shadowed_by(
-        &mut self,
-        view: &ShadowedView,
-        other: &OtherShadows<'_>,
-        seed: u32,
-    ) -> Result<Option<Duration>, EngineError> {
-        self.ensure_visible()?;
-        let [nodes, triangles] = &view.blockers;
-        let depths = other.buffer.unwrap_or(nodes);
-        let own = [("nodes", nodes), ("blocker_triangles", triangles), ("depths", depths)];
-        let resources = self.bound_to(other.kernel, &own);
-        let pass = self.engine.pass(other.kernel, other.specialization, &resources)?;
-        let items = other.items.map_or(self.items(), |[width, height]| [width, height, 1]);
-        let constants = ShadeConstants { seed, ..self.shade_constants() };
-        self.engine.host().try_submit_timed(|commands| {
-            self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
-            pass.record(commands, &constants, items)
         })
     }
 }

@@ -15,7 +15,7 @@ use std::process::ExitCode;
 
 /// Measure the error and cost of shadows at each level.
 ///
-/// Pictures of scenes by every level, and by area sampling with as many rays, are held against the Monte
+/// Pictures of scenes by every level are held against the Monte
 /// Carlo reference with shadows: the part of each pixel's light that arrives, in all lit pixels and in
 /// penumbra alone, and the radiance. Times are of each pass of a frame.
 #[derive(clap::Args)]
