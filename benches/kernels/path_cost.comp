@@ -24,11 +24,6 @@ const int PATH_ABOVE = 1;
 const int PATH_CROSSING_1 = 2; // with one vertex above
 const int PATH_CROSSING_2 = 3;
 const int PATH_CROSSING_3 = 4;
-// What a branch on acute edges would make of PATH_ABOVE: where all invocations have acute edges alone, where
-// none has, where some have
-const int PATH_ACUTE = 5;
-const int PATH_NOT_ACUTE = 6;
-const int PATH_MIXED = 7;
 
 layout(constant_id = 0) const int METHOD = METHOD_EXACT;
 layout(constant_id = 1) const bool IN_FRONT = true; // else behind the light
@@ -65,35 +60,11 @@ vec3 crossing(ArealightQuad quad, int above) {
     return arcs + arealight_horizon_arc(exit.xy, entry.xy, -arcs.z, 1.0);
 }
 
-// z of the arc between unit vectors at an acute angle with the cosine x, weighted as arealight_horizon_arc
-// weights it.
-vec3 acute_arc(vec3 a, vec3 b, float x) {
-    float s = cross(a, b).z;
-    return vec3(0.0, 0.0, s * (1.5707963 + x * (1.1001613 + x * (0.056827213 - x * 0.0033851264)))
-                          / (1.0 + x * (1.3370004 + x * 0.38739931)));
-}
-
 // The arcs around a quad that is wholly above the horizon, as in arealight_quad_vector.
 vec3 arcs_above(ArealightQuad quad) {
     vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c),
         d = arealight_unit(quad.d);
     return arealight_arc(a, b) + arealight_arc(b, c) + arealight_arc(c, d) + arealight_arc(d, a);
-}
-
-// The same behind a test whether edges are acute.
-vec3 above_by_edges(ArealightQuad quad, int path) {
-    vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c),
-        d = arealight_unit(quad.d);
-    vec4 x = vec4(dot(a, b), dot(b, c), dot(c, d), dot(d, a));
-    bool is_acute = min(min(x.x, x.y), min(x.z, x.w)) > 0.0;
-    vec3 acute = vec3(0.0), other = vec3(0.0);
-    if (path != PATH_NOT_ACUTE) {
-        acute = acute_arc(a, b, x.x) + acute_arc(b, c, x.y) + acute_arc(c, d, x.z) + acute_arc(d, a, x.w);
-    }
-    if (path != PATH_ACUTE) {
-        other = arealight_arc(a, b) + arealight_arc(b, c) + arealight_arc(c, d) + arealight_arc(d, a);
-    }
-    return mix(other, acute, bvec3(is_acute));
 }
 
 vec3 arcs_by(int path, ArealightQuad quad) {
@@ -106,10 +77,6 @@ vec3 arcs_by(int path, ArealightQuad quad) {
         return crossing(quad, 2);
     case PATH_CROSSING_3:
         return crossing(quad, 3);
-    case PATH_ACUTE:
-    case PATH_NOT_ACUTE:
-    case PATH_MIXED:
-        return above_by_edges(quad, path);
     default:
         return vec3(0.0);
     }

@@ -37,20 +37,12 @@ const uint LIGHTS_PER_WAVE = 32u;
 const uint BEHIND = 1u; // or in the light's plane
 const uint IN_FRONT = 2u;
 const int LOBE_SHIFT = 2;
-const int LOBE_BITS = 6;
+const int LOBE_BITS = 5;
 const uint BELOW = 1u;
-const uint ABOVE_ACUTE = 2u; // with edges of less than a right angle
-const uint ABOVE = 4u;       // with another edge
-const uint CROSSING_1 = 8u;  // with one vertex above; with two and three the next bits
+const uint ABOVE = 2u;
+const uint CROSSING_1 = 4u; // with one vertex above; with two and three the next bits
 
 shared uint wave_paths[8u / ROWS_PER_WAVE];
-
-// The least cosine of the angles that edges subtend.
-float least_cosine(ArealightQuad quad) {
-    vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c),
-        d = arealight_unit(quad.d);
-    return min(min(dot(a, b), dot(b, c)), min(dot(c, d), dot(d, a)));
-}
 
 // The path of arealight_quad_vector.
 uint quad_path(ArealightQuad quad) {
@@ -58,7 +50,7 @@ uint quad_path(ArealightQuad quad) {
         return BELOW;
     }
     if (arealight_lowest(quad) > 0.0) {
-        return least_cosine(quad) > 0.0 ? ABOVE_ACUTE : ABOVE;
+        return ABOVE;
     }
     ArealightQuad turned = arealight_turned(quad);
     return CROSSING_1 << (turned.b.z > 0.0 ? (turned.c.z > 0.0 ? 2 : 1) : 0);

@@ -65,7 +65,7 @@ impl Paths {
     /// In front of it.
     pub const IN_FRONT: Self = Self(2);
     const LOBE_SHIFT: usize = 2;
-    const LOBE_BITS: usize = 6;
+    const LOBE_BITS: usize = 5;
 
     /// These, and in front of the light: the lobes' own.
     pub fn in_front(lobes: [LobePaths; LOBES]) -> Self {
@@ -95,12 +95,10 @@ pub struct LobePaths(pub u32);
 impl LobePaths {
     /// Wholly below the lobe's horizon.
     pub const BELOW: Self = Self(1);
-    /// Wholly above it, with edges that subtend less than a right angle.
-    pub const ABOVE_ACUTE: Self = Self(2);
-    /// Wholly above it, with another edge.
-    pub const ABOVE: Self = Self(4);
+    /// Wholly above it.
+    pub const ABOVE: Self = Self(2);
     /// Crossing it, with one, two and three vertices above.
-    pub const CROSSING: [Self; 3] = [Self(8), Self(16), Self(32)];
+    pub const CROSSING: [Self; 3] = [Self(4), Self(8), Self(16)];
 
     /// These and those.
     #[must_use]
@@ -119,18 +117,12 @@ impl LobePaths {
 
     /// Whether some invocation is wholly above it.
     pub const fn is_above(self) -> bool {
-        self.has(Self::ABOVE_ACUTE.and(Self::ABOVE))
+        self.has(Self::ABOVE)
     }
 
-    /// What a wave pays; `by_edges`: were there a branch on acute edges.
-    fn cost(self, costs: &LobeCosts, by_edges: bool) -> f64 {
-        let above = match (self.has(Self::ABOVE_ACUTE), self.has(Self::ABOVE)) {
-            (false, false) => 0.0,
-            _ if !by_edges => costs.above,
-            (true, false) => costs.by_edges[0],
-            (false, true) => costs.by_edges[1],
-            (true, true) => costs.by_edges[2],
-        };
+    /// What a wave pays.
+    fn cost(self, costs: &LobeCosts) -> f64 {
+        let above = if self.is_above() { costs.above } else { 0.0 };
         // The chain goes as far as the invocation with the most vertices above
         above + self.most_above().map_or(0.0, |most| costs.crossing[most - 1])
     }
@@ -204,8 +196,6 @@ impl Counts {
 pub struct FrameCost {
     /// Ours.
     pub exact: f64,
-    /// Ours, were there a branch on acute edges.
-    pub by_edges: f64,
     /// The clipless school's, whose waves skip a light that all of their invocations are behind.
     pub clipless: f64,
     /// Its straight code, that computes every light as one seen from the front.
@@ -215,25 +205,21 @@ pub struct FrameCost {
 impl FrameCost {
     /// What a frame costs.
     pub fn new(counts: &Counts, costs: &Costs) -> Self {
-        let exact = |by_edges: bool| {
-            let lobes = |paths: Paths| -> f64 {
-                costs.lobes.iter().enumerate().map(|(i, lobe)| paths.lobe(i).cost(lobe, by_edges)).sum()
-            };
-            let light = |paths| facing(paths, &costs.exact) + lobes(paths);
-            costs.exact.pixel + counts.mean(light)
+        let lobes = |paths: Paths| -> f64 {
+            costs.lobes.iter().enumerate().map(|(i, lobe)| paths.lobe(i).cost(lobe)).sum()
         };
+        let light = |paths| facing(paths, &costs.exact) + lobes(paths);
         let clipless = costs.clipless;
         Self {
-            exact: exact(false),
-            by_edges: exact(true),
+            exact: costs.exact.pixel + counts.mean(light),
             clipless: clipless.pixel + counts.mean(|paths| facing(paths, &clipless)),
             clipless_straight: clipless.pixel + counts.mean(|_| clipless.in_front),
         }
     }
 
     /// In the order of the fields.
-    const fn all(&self) -> [f64; 4] {
-        [self.exact, self.by_edges, self.clipless, self.clipless_straight]
+    const fn all(&self) -> [f64; 3] {
+        [self.exact, self.clipless, self.clipless_straight]
     }
 }
 
@@ -282,8 +268,7 @@ mod tests {
     use super::*;
 
     const COSTS: Costs = {
-        let lobe =
-            LobeCosts { above: 170.0, crossing: [180.0, 220.0, 260.0], by_edges: [140.0, 190.0, 230.0] };
+        let lobe = LobeCosts { above: 170.0, crossing: [180.0, 220.0, 260.0] };
         Costs {
             exact: MethodCosts { pixel: 400.0, behind: 20.0, in_front: 100.0 },
             clipless: MethodCosts { pixel: 300.0, behind: 10.0, in_front: 600.0 },
@@ -343,24 +328,13 @@ mod tests {
         assert!(near(of(one, below), 180.0));
         assert!(near(of(one.and(three), below), 260.0));
         assert!(near(of(one.and(LobePaths::ABOVE), below), 180.0 + 170.0));
-
-        let by_edges = |diffuse: LobePaths| lobes(diffuse, below).by_edges - 500.0;
-        let acute = LobePaths::ABOVE_ACUTE;
-        let found = [by_edges(acute), by_edges(LobePaths::ABOVE), by_edges(acute.and(LobePaths::ABOVE))];
-        assert!(
-            found.into_iter().zip([140.0, 190.0, 230.0]).all(|(one, other)| near(one, other)),
-            "{found:?}"
-        );
     }
 
     #[test]
     fn lights_behind_cost_what_their_test_does_unless_code_is_straight() {
         let found = cost(Paths::BEHIND);
         let all = found.all();
-        assert!(
-            all.into_iter().zip([420.0, 420.0, 310.0, 900.0]).all(|(one, other)| near(one, other)),
-            "{all:?}"
-        );
+        assert!(all.into_iter().zip([420.0, 310.0, 900.0]).all(|(one, other)| near(one, other)), "{all:?}");
         // The twin: an invocation in front makes the wave pay
         let lobes = Paths::in_front([LobePaths::BELOW; LOBES]).0;
         assert!(near(cost(Paths(Paths::BEHIND.0 | lobes)).clipless, 900.0));

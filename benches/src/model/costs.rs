@@ -19,20 +19,14 @@ enum Path {
     Crossing1 = 2,
     Crossing2 = 3,
     Crossing3 = 4,
-    Acute = 5,
-    NotAcute = 6,
-    Mixed = 7,
 }
 
 /// Each but the first with the name of its row, by lobe: the other lobe is above, as it mostly is.
-const PATHS: [(Path, [&str; LOBES]); 7] = [
+const PATHS: [(Path, [&str; LOBES]); 4] = [
     (Path::Below, ["diffuse below", "specular below"]),
     (Path::Crossing1, ["diffuse crossing, 1 above", "specular crossing, 1 above"]),
     (Path::Crossing2, ["diffuse crossing, 2 above", "specular crossing, 2 above"]),
     (Path::Crossing3, ["diffuse crossing, 3 above", "specular crossing, 3 above"]),
-    (Path::Acute, ["diffuse above, branch on edges: acute", "specular above, branch on edges: acute"]),
-    (Path::NotAcute, ["diffuse above, branch on edges: others", "specular above, branch on edges: others"]),
-    (Path::Mixed, ["diffuse above, branch on edges: both", "specular above, branch on edges: both"]),
 ];
 
 /// Behind a light, or in front of it with both lobes above: the name of the row in a loop, and of that of one
@@ -80,8 +74,6 @@ pub struct LobeCosts {
     pub above: f64,
     /// Crossing it with one, two and three vertices above.
     pub crossing: [f64; 3],
-    /// Wholly above with a branch on whether all edges are acute: in all invocations, in none, in some.
-    pub by_edges: [f64; 3],
 }
 
 /// Inverse throughput of every path on a family of GPU.
@@ -123,7 +115,6 @@ impl Costs {
             Some(LobeCosts {
                 above: (all_above - below) / LOOP,
                 crossing: [added(Path::Crossing1)?, added(Path::Crossing2)?, added(Path::Crossing3)?],
-                by_edges: [added(Path::Acute)?, added(Path::NotAcute)?, added(Path::Mixed)?],
             })
         };
         let lobes = [lobe(0)?, lobe(1)?];

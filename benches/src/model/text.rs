@@ -72,15 +72,9 @@ fn shares(scenes: &[Modelled]) -> Table {
         }),
     ];
     for (lobe, name) in LOBE_NAMES.into_iter().enumerate() {
-        let kinds: [(&str, &dyn Fn(LobePaths) -> bool); 8] = [
+        let kinds: [(&str, &dyn Fn(LobePaths) -> bool); 6] = [
             ("below alone", &|paths| paths == LobePaths::BELOW),
             ("above alone, or with below", &|paths| paths.is_above() && !paths.crosses()),
-            ("of these acute in all", &|paths| {
-                paths.is_above() && !paths.crosses() && !paths.has(LobePaths::ABOVE)
-            }),
-            ("of these acute in some", &|paths| {
-                !paths.crosses() && paths.has(LobePaths::ABOVE) && paths.has(LobePaths::ABOVE_ACUTE)
-            }),
             ("above and crossing", &|paths| paths.is_above() && paths.crosses()),
             ("crossing alone, at most 1 above", &|paths| !paths.is_above() && paths.most_above() == Some(1)),
             ("at most 2", &|paths| !paths.is_above() && paths.most_above() == Some(2)),
@@ -107,16 +101,8 @@ fn paths(costs: &Costs) -> Table {
     ];
     for (name, lobe) in LOBE_NAMES.into_iter().zip(&costs.lobes) {
         let [one, two, three] = lobe.crossing;
-        let [acute, others, mixed] = lobe.by_edges;
-        let more = [
-            ("above", lobe.above),
-            ("crossing with 1 above", one),
-            ("with 2", two),
-            ("with 3", three),
-            ("above behind a branch on edges, acute", acute),
-            ("not acute", others),
-            ("both", mixed),
-        ];
+        let more =
+            [("above", lobe.above), ("crossing with 1 above", one), ("with 2", two), ("with 3", three)];
         for (path, cost) in more {
             rows.push(vec![format!("+ {name}: {path}"), format!("{cost:.0}"), String::new()]);
         }
@@ -126,24 +112,14 @@ fn paths(costs: &Costs) -> Table {
 
 /// A row a scene and a size of wave, and one of all scenes.
 fn frames(scenes: &[Modelled], costs: &Costs) -> Table {
-    let heads = [
-        "",
-        "ours",
-        "with a branch on acute edges",
-        "clipless",
-        "clipless, straight",
-        "ratio",
-        "with the branch",
-        "ratio to straight",
-        "with the branch",
-    ];
+    let heads = ["", "ours", "clipless", "clipless, straight", "ratio", "ratio to straight"];
     let mut rows = vec![];
     for (wave, name) in [Wave::Of32, Wave::Of64].into_iter().zip(["8 x 4", "8 x 8"]) {
-        let mut sum = [0.0; 4];
+        let mut sum = [0.0; 3];
         for scene in scenes {
             let counts = &scene.counts[wave as usize];
             let cost = FrameCost::new(counts, costs).all();
-            (0..4).for_each(|at| sum[at] += cost[at] * counts.waves as f64);
+            (0..3).for_each(|at| sum[at] += cost[at] * counts.waves as f64);
             rows.push(cells(format!("{}, waves of {name}", scene.name), cost));
         }
         let waves: u64 = scenes.iter().map(|scene| scene.counts[wave as usize].waves).sum();
@@ -152,9 +128,9 @@ fn frames(scenes: &[Modelled], costs: &Costs) -> Table {
     Table::new(&heads, rows)
 }
 
-fn cells(name: String, cost: [f64; 4]) -> Vec<String> {
-    let [ours, by_edges, clipless, straight] = cost;
-    let ratios = [ours / clipless, by_edges / clipless, ours / straight, by_edges / straight];
+fn cells(name: String, cost: [f64; 3]) -> Vec<String> {
+    let [ours, clipless, straight] = cost;
+    let ratios = [ours / clipless, ours / straight];
     let numbers = cost.iter().map(|cost| format!("{cost:.0}"));
     [name].into_iter().chain(numbers).chain(ratios.iter().map(|ratio| format!("{ratio:.2}"))).collect()
 }
