@@ -1,5 +1,5 @@
-//! Two small engines that embed Arealight, on a host that knows nothing of it (`tools/host`: a device, memory,
-//! frames in flight, a window's images):
+//! Two small engines that embed Arealight, on a host that knows nothing of it (`tools/host`: a device,
+//! memory, frames in flight, a window's images):
 //!
 //! - [`deferred`] draws a G-buffer, and has it shaded by `AreaLights` (`arealight-vk`); [`recorded`] is the
 //!   same engine by the recorder, which owns nothing;
@@ -17,8 +17,8 @@
 //! cargo run --release -p arealight-examples --features window --bin deferred
 //! ```
 //!
-//! Both make the same picture. What is theirs alone is in [`deferred`], [`recorded`] and [`forward`]; how they
-//! draw triangles is in [`draw`].
+//! Both make the same picture. What is theirs alone is in [`deferred`], [`recorded`] and [`forward`]; how
+//! they draw triangles is in [`draw`].
 
 pub mod command_line;
 pub mod deferred;

@@ -84,7 +84,8 @@ pub enum HostError {
     /// The device was lost: the driver reset it, or crashed.
     #[error(
         "the Vulkan device was lost in {call}: the driver reset it, usually for a dispatch that took too \
-         long or read out of bounds. Try again with less work, and with validation; the system's log may say more"
+         long or read out of bounds. Try again with less work, and with validation; the system's log may say \
+         more"
     )]
     DeviceLost {
         /// The Vulkan function that said so.

@@ -172,7 +172,8 @@ impl Swapchain {
     /// it.
     ///
     /// # Errors
-    /// [`HostError::Vulkan`] with `ERROR_OUT_OF_DATE_KHR` where the window has changed, and where the device refuses.
+    /// [`HostError::Vulkan`] with `ERROR_OUT_OF_DATE_KHR` where the window has changed, and where the device
+    /// refuses.
     ///
     /// # Safety
     /// No frame of this place is in flight, and the next that is submitted has these semaphores.
