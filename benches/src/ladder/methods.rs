@@ -3,7 +3,7 @@
 use super::points::LightKind;
 use crate::school::{School, YardstickTable};
 use arealight::kernels::{Kernel, SHADE_PASS};
-use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, Quality, SpecularLobes};
+use arealight::{Effects, Footprint, FormFactor, Horizon, Level, Lobes, Quality, SpecularLobes};
 
 /// The shade kernel with the form factors that others ship.
 pub static SHADE_YARDSTICK: Kernel =
@@ -100,6 +100,7 @@ pub fn workloads() -> Vec<Workload> {
         method: Method::Level { effects: LOBES | effects, quality },
     };
     let plain = |name, description, quality| level(name, description, Effects::empty(), quality);
+    let named = |level: Level, description| plain(level.name(), description, level.quality());
     let yardstick = |name, description, school, table| Named {
         name,
         description,
@@ -125,20 +126,12 @@ pub fn workloads() -> Vec<Workload> {
             YardstickTable::PublishedQuality,
         ),
         plain(DEFAULT, "the default: clipped in cosine space", EXACT),
-        plain("formula", "lobes by formula, no table", Quality { lobes: Lobes::Formula, ..EXACT }),
-        plain("two lobes", "two specular lobes", Quality { specular_lobes: SpecularLobes::Two, ..EXACT }),
-        plain(
-            "half vectors",
-            "GGX over half vectors",
-            Quality { specular_lobes: SpecularLobes::HalfVectors, ..EXACT },
-        ),
+        named(Level::Formula, "lobes by formula, no table"),
+        named(Level::TwoLobes, "two specular lobes"),
+        named(Level::HalfVectors, "GGX over half vectors"),
         plain("both horizons", "nothing leaks from below", Quality { horizon: Horizon::Both, ..EXACT }),
         plain("difference", "precise for small lights", DIFFERENCE),
-        plain(
-            "two lobes + both",
-            "two specular lobes, at both horizons",
-            Quality { specular_lobes: SpecularLobes::Two, horizon: Horizon::Both, ..EXACT },
-        ),
+        named(Level::Finest, "two specular lobes, at both horizons"),
         plain(
             "everything",
             "two specular lobes, both horizons, difference",

@@ -112,7 +112,7 @@ pub use planes::{Plane, Planes};
 #[doc(inline)]
 pub use pyramid::PyramidSize;
 #[doc(inline)]
-pub use quality::{Footprint, FormFactor, Horizon, Lobes, Quality, SpecularLobes};
+pub use quality::{Footprint, FormFactor, Horizon, Level, Lobes, Quality, SpecularLobes};
 #[doc(inline)]
 pub use table::{LightTable, TableDescription, TableError, TableSample};
 #[doc(inline)]

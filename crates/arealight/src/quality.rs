@@ -1,4 +1,4 @@
-//! Quality levels, chosen by the host for each pass.
+//! Quality levels, chosen by the host for each pass: a [`Level`] by its name, or each choice in a [`Quality`].
 
 /// How the arcs that a polygon's edges subtend are summed to a form factor.
 ///
@@ -82,7 +82,60 @@ pub enum Footprint {
     Split = 2,
 }
 
-/// The quality levels that a pass is specialised for.
+/// A quality level by its name: each has the least error at its cost, or keeps a promise that no other keeps.
+/// Which to take: docs/cost.md.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum Level {
+    /// One fitted lobe, clipped at its own horizon: for most scenes.
+    #[default]
+    Exact = 0,
+    /// Two fitted lobes, at .6 to .8 times the error: for metals and glossy floors.
+    TwoLobes = 1,
+    /// That, clipped at the surface's horizon as well: for stills and references. Nothing leaks in from below
+    /// the surface.
+    Finest = 2,
+    /// GGX over half vectors: for brushed metals, thin films and coats under lamps.
+    HalfVectors = 3,
+    /// As [`Level::Exact`], of formulas in place of the table: no texture to bind.
+    Formula = 4,
+}
+
+impl Level {
+    /// Every level, by number.
+    pub const ALL: [Self; 5] = [Self::Exact, Self::TwoLobes, Self::Finest, Self::HalfVectors, Self::Formula];
+
+    /// The level's name, as charts and the viewer have it; `--level` has hyphens for its spaces.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::TwoLobes => "two lobes",
+            Self::Finest => "finest",
+            Self::HalfVectors => "half vectors",
+            Self::Formula => "formula",
+        }
+    }
+
+    /// What the level chooses. Images on lights are looked up by one fetch on each.
+    pub fn quality(self) -> Quality {
+        let exact = Quality::default();
+        match self {
+            Self::Exact => exact,
+            Self::TwoLobes => Quality { specular_lobes: SpecularLobes::Two, ..exact },
+            Self::Finest => Quality { specular_lobes: SpecularLobes::Two, horizon: Horizon::Both, ..exact },
+            Self::HalfVectors => Quality { specular_lobes: SpecularLobes::HalfVectors, ..exact },
+            Self::Formula => Quality { lobes: Lobes::Formula, ..exact },
+        }
+    }
+}
+
+impl From<Level> for Quality {
+    fn from(level: Level) -> Self {
+        level.quality()
+    }
+}
+
+/// What a pass is specialised for, choice by choice: of a [`Level`], or of your own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Quality {
     /// How edges of the polygon are integrated.

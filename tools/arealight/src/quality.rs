@@ -1,24 +1,29 @@
 //! Quality levels, as options of a command.
 
 use crate::failure::Failure;
-use arealight::{Footprint, FormFactor, Horizon, LightTable, Lobes, Quality, SpecularLobes};
+use arealight::{Footprint, FormFactor, Horizon, Level, LightTable, Lobes, Quality, SpecularLobes};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::PathBuf;
 
 /// How lights are integrated.
-#[derive(clap::Args, Clone, Debug)]
+#[derive(clap::Args, Clone, Debug, Default)]
 pub struct QualityArguments {
-    /// How edges of lights are integrated [default: exact for render, difference for eval]
+    /// The quality level; docs/cost.md says which to take [default: exact for render, the most precise for
+    /// eval]
+    #[arg(long, value_name = "LEVEL", value_parser = level_parser())]
+    level: Option<Level>,
+    /// Within the level: how edges of lights are integrated
     #[arg(long, value_enum, value_name = "HOW")]
     form_factor: Option<Edges>,
-    /// Where lights are clipped
-    #[arg(long, value_enum, value_name = "WHERE", default_value_t = Clip::Cosine)]
-    horizon: Clip,
-    /// How the specular lobe is integrated [default: one for render, two for eval]
+    /// Within the level: where lights are clipped
+    #[arg(long, value_enum, value_name = "WHERE")]
+    horizon: Option<Clip>,
+    /// Within the level: how the specular lobe is integrated
     #[arg(long, value_enum, value_name = "HOW")]
     specular_lobes: Option<Specular>,
-    /// Where the glossy lobe comes from
-    #[arg(long, value_enum, value_name = "WHERE", default_value_t = Source::Table)]
-    lobes: Source,
+    /// Within the level: where the glossy lobe comes from
+    #[arg(long, value_enum, value_name = "WHERE")]
+    lobes: Option<Source>,
     /// How light textures are looked up [default: round for render, split for eval]
     #[arg(long, value_enum, value_name = "HOW")]
     footprint: Option<Lookup>,
@@ -104,35 +109,34 @@ pub enum Lookup {
     Split,
 }
 
-impl Default for QualityArguments {
-    fn default() -> Self {
-        Self {
-            form_factor: None,
-            horizon: Clip::Cosine,
-            specular_lobes: None,
-            lobes: Source::Table,
-            footprint: None,
-            table: None,
-        }
-    }
+/// The names of levels, with hyphens for spaces.
+fn level_parser() -> impl TypedValueParser<Value = Level> {
+    let word = |level: Level| level.name().replace(' ', "-");
+    PossibleValuesParser::new(Level::ALL.map(word)).map(move |name| {
+        let known = Level::ALL.into_iter().find(|level| word(*level) == name);
+        known.expect("clap takes no other name")
+    })
 }
 
 impl QualityArguments {
-    /// The levels chosen, and those of `default` where none is.
+    /// The level chosen, or `default`, with what was chosen within it.
     pub fn quality_or(&self, default: Quality) -> Quality {
+        let default = self.level.map_or(default, Level::quality);
         let form_factor = match self.form_factor {
             None => default.form_factor,
             Some(Edges::Exact) => FormFactor::Exact,
             Some(Edges::Difference) => FormFactor::Difference,
         };
         let horizon = match self.horizon {
-            Clip::Cosine => Horizon::Cosine,
-            Clip::Both => Horizon::Both,
+            None => default.horizon,
+            Some(Clip::Cosine) => Horizon::Cosine,
+            Some(Clip::Both) => Horizon::Both,
         };
         let specular_lobes = self.specular_lobes.map_or(default.specular_lobes, SpecularLobes::from);
         let lobes = match self.lobes {
-            Source::Table => Lobes::Table,
-            Source::Formula => Lobes::Formula,
+            None => default.lobes,
+            Some(Source::Table) => Lobes::Table,
+            Some(Source::Formula) => Lobes::Formula,
         };
         let footprint = match self.footprint {
             None => default.footprint,
@@ -151,6 +155,45 @@ impl QualityArguments {
         match &self.table {
             None => Ok(LightTable::ggx()),
             Some(path) => arealight_table::load(path).map_err(|error| Failure::input(path, error)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Command {
+        #[command(flatten)]
+        quality: QualityArguments,
+    }
+
+    fn chosen(words: &[&str]) -> Option<Quality> {
+        let command = Command::try_parse_from([&["command"], words].concat()).ok()?;
+        Some(command.quality.quality_or(Level::Formula.quality()))
+    }
+
+    #[test]
+    fn a_level_is_the_default_of_what_is_chosen_within_it() {
+        assert_eq!(chosen(&[]), Some(Level::Formula.quality()));
+        for level in Level::ALL {
+            assert_eq!(chosen(&["--level", &level.name().replace(' ', "-")]), Some(level.quality()));
+        }
+        let narrower = Quality { horizon: Horizon::Cosine, ..Level::Finest.quality() };
+        assert_eq!(chosen(&["--level", "finest", "--horizon", "cosine"]), Some(narrower));
+        assert_ne!(narrower, Level::Finest.quality());
+        assert_eq!(chosen(&["--level", "best"]), None);
+    }
+
+    #[test]
+    fn no_two_levels_are_the_same() {
+        for (i, level) in Level::ALL.into_iter().enumerate() {
+            assert_eq!(level as usize, i);
+            for other in &Level::ALL[..i] {
+                assert_ne!(level.quality(), other.quality(), "{}", level.name());
+            }
         }
     }
 }

@@ -182,7 +182,8 @@ impl Swapchain {
         // SAFETY: the caller's contract: nothing waits for the semaphore any more.
         let acquired =
             unsafe { self.functions.acquire_next_image(self.raw, u64::MAX, free, vk::Fence::null()) };
-        let (index, _) = acquired.named("vkAcquireNextImageKHR")?; // an image that does not quite fit is still shown
+        // An image that does not quite fit is still shown
+        let (index, _) = acquired.named("vkAcquireNextImageKHR")?;
         let semaphores = Semaphores {
             wait: Some((free, vk::PipelineStageFlags::TRANSFER)),
             signal: Some(self.drawn[index as usize]),

@@ -8,7 +8,7 @@ use crate::lights::{LightArguments, scene_name};
 use crate::output::{self, print};
 use crate::picture::Exposure;
 use crate::progress;
-use crate::view::{Engines, Mode, Script, Shown, State, Viewer, levels, paint};
+use crate::view::{Engines, Mode, Script, Shown, State, Viewer, paint};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -160,7 +160,7 @@ fn summary(state: &State, shown: &Shown<'_>, seconds: f64) -> Value {
         .collect();
     json!({
         "seconds": seconds,
-        "level": levels().get(state.level).map(|level| level.name),
+        "level": state.level.name(),
         "mode": match state.mode {
             Mode::Picture => "picture",
             Mode::Wipe(_) => "wipe",

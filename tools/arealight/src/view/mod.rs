@@ -13,7 +13,7 @@ mod window;
 
 pub use paint::paint;
 pub use script::Script;
-pub use state::{Mode, State, levels};
+pub use state::{Mode, State};
 pub use viewer::{Engines, Shown, Viewer};
 #[cfg(feature = "view")]
 pub use window::show;

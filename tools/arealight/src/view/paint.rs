@@ -2,7 +2,7 @@
 
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
-use super::state::{KEYS, Mode, Partner, State, levels};
+use super::state::{KEYS, Mode, Partner, State};
 use super::truth::Distance;
 use super::viewer::{Cost, Shown};
 use crate::canvas::{Align, Canvas, Colour, LINE};
@@ -103,13 +103,11 @@ fn scale(canvas: &mut Canvas, width: i32) {
 
 /// What there is to say of a picture, in lines.
 fn status(state: &State, shown: &Shown<'_>) -> Vec<String> {
-    let levels = levels();
-    let level = levels.get(state.level).map_or("", |level| level.name);
+    let level = state.level.name();
     let shadows = if state.has_shadows() { "with shadows" } else { "without shadows" };
     let roughness =
         state.roughness.map_or_else(String::new, |roughness| format!(", roughness {roughness:.2}"));
-    let mut lines =
-        vec![format!("{} {level}, {shadows}{roughness}, exposure {:+.1}", state.level + 1, state.exposure)];
+    let mut lines = vec![format!("{level}, {shadows}{roughness}, exposure {:+.1}", state.exposure)];
     if shown.times.iter().any(Option::is_some) {
         let [visibility, shading] = shown.times.map(milliseconds);
         lines.push(format!("shading {shading}, visibility {visibility}"));

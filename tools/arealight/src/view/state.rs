@@ -3,40 +3,10 @@
 use super::lamps;
 use super::orbit::Orbit;
 use crate::picture::MAX_STOPS;
-use arealight::{FormFactor, Horizon, Lobes, Quality, SpecularLobes};
+use arealight::Level;
 use arealight_scene::{Camera, Scene};
 use glam::DVec3;
 use std::str::FromStr;
-
-/// A quality level with its name.
-pub struct Level {
-    /// A short name.
-    pub name: &'static str,
-    /// The level.
-    pub quality: Quality,
-}
-
-/// The levels that keys choose, from 1 on: the default, and what each option adds.
-pub fn levels() -> [Level; 6] {
-    let exact = Quality::default();
-    let all = Quality {
-        specular_lobes: SpecularLobes::Two,
-        horizon: Horizon::Both,
-        form_factor: FormFactor::Difference,
-        ..exact
-    };
-    [
-        Level { name: "exact", quality: exact },
-        Level { name: "two lobes", quality: Quality { specular_lobes: SpecularLobes::Two, ..exact } },
-        Level { name: "both horizons", quality: Quality { horizon: Horizon::Both, ..exact } },
-        Level { name: "everything", quality: all },
-        Level { name: "formula", quality: Quality { lobes: Lobes::Formula, ..exact } },
-        Level {
-            name: "half vectors",
-            quality: Quality { specular_lobes: SpecularLobes::HalfVectors, ..exact },
-        },
-    ]
-}
 
 /// What is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -61,8 +31,8 @@ pub enum Partner {
 /// A key that means something.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Key {
-    /// A quality level, from 0.
-    Level(usize),
+    /// A quality level.
+    Level(Level),
     Wipe,
     Error,
     Shadows,
@@ -82,7 +52,7 @@ pub enum Key {
 
 /// Keys as help and scripts name them, and what each does.
 pub const KEYS: [(&str, &str); 11] = [
-    ("1 to 6", "quality level"),
+    ("1 to 5", "quality level"),
     ("w", "wipe: against the truth, against what engines ship, off"),
     ("e", "map of the error"),
     ("s", "shadows"),
@@ -117,7 +87,7 @@ impl FromStr for Key {
             "up" => Self::Turn([0.0, -0.04]),
             "down" => Self::Turn([0.0, 0.04]),
             _ => match name.parse() {
-                Ok(number @ 1..=6) => Self::Level(number - 1),
+                Ok(number @ 1..=5) => Self::Level(Level::ALL[number - 1]),
                 _ => return Err(format!("'{name}' is no key of the viewer")),
             },
         })
@@ -157,8 +127,8 @@ enum Grip {
 pub struct State {
     /// The camera.
     pub orbit: Orbit,
-    /// Of [`levels`].
-    pub level: usize,
+    /// The quality level.
+    pub level: Level,
     /// What is shown.
     pub mode: Mode,
     /// Where the line of a wipe is, as a part of the width.
@@ -198,7 +168,7 @@ impl State {
         let home = Orbit::new(camera, scene.bounds);
         Self {
             orbit: home,
-            level: 0,
+            level: Level::default(),
             mode: Mode::Picture,
             divider: 0.5,
             exposure,
@@ -259,7 +229,7 @@ impl State {
 
     fn press_key(&mut self, key: Key) {
         match key {
-            Key::Level(level) => self.level = level.min(levels().len() - 1),
+            Key::Level(level) => self.level = level,
             Key::Wipe => {
                 self.mode = match self.mode {
                     Mode::Wipe(Partner::Truth) if self.has_yardstick => Mode::Wipe(Partner::Yardstick),
@@ -340,8 +310,10 @@ mod tests {
 
     #[test]
     fn keys_choose_what_is_shown() {
-        assert_eq!(keys(&["4"]).level, 3);
-        assert!(levels().iter().enumerate().all(|(i, _)| keys(&[&(i + 1).to_string()]).level == i));
+        assert_eq!(keys(&["4"]).level, Level::HalfVectors);
+        assert!(
+            Level::ALL.iter().enumerate().all(|(i, level)| keys(&[&(i + 1).to_string()]).level == *level)
+        );
         assert_eq!(keys(&["w"]).mode, Mode::Wipe(Partner::Truth));
         assert_eq!(keys(&["w", "w"]).mode, Mode::Wipe(Partner::Yardstick));
         assert_eq!(keys(&["w", "w", "w"]).mode, Mode::Picture);

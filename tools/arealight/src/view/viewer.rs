@@ -1,11 +1,11 @@
 //! A scene on the device, drawn as the state says: what has changed since the last frame alone is done again.
 
-use super::state::{Mode, Partner, State, levels};
+use super::state::{Mode, Partner, State};
 use super::truth::{Distance, Truth};
 use super::{lamps, orbit::Orbit};
 use crate::shadows::Shadows;
 use arealight::plan::{ShadeOptions, ShadowHistory};
-use arealight::{Effects, Quality};
+use arealight::{Effects, Level, Quality};
 use arealight_benches::ladder::{SHADE_YARDSTICK, yardstick_for};
 use arealight_benches::published;
 use arealight_engine::{Engine, EngineError, Reference, SceneRenderer, ShadowedView};
@@ -60,7 +60,7 @@ struct Seen {
 
 /// A picture that was drawn.
 struct Drawn {
-    of: (Seen, usize),
+    of: (Seen, Level),
     radiance: Vec<DVec3>,
     time: Option<Duration>,
 }
@@ -76,7 +76,7 @@ pub struct Viewer<'a> {
     buffers: SceneBuffers,
     renderer: SceneRenderer<'a>,
     yardstick: Option<SceneRenderer<'a>>,
-    shadowed: Option<(usize, Vec<ShadowedView>)>,
+    shadowed: Option<(Level, Vec<ShadowedView>)>,
     size: [u32; 2],
     /// Of the renderers' cameras.
     looks: Option<Orbit>,
@@ -270,7 +270,7 @@ impl<'a> Viewer<'a> {
         if required.is_empty() { Effects::DIFFUSE } else { required }
     }
 
-    fn draw_ours(&mut self, seen: &Seen, level: usize) -> Result<(), EngineError> {
+    fn draw_ours(&mut self, seen: &Seen, level: Level) -> Result<(), EngineError> {
         let of = (seen.clone(), level);
         if self.ours.as_ref().is_some_and(|drawn| drawn.of == of) {
             return Ok(());
@@ -281,14 +281,14 @@ impl<'a> Viewer<'a> {
         Ok(())
     }
 
-    fn shade(&mut self, level: usize) -> Result<Option<Duration>, EngineError> {
-        self.renderer.shade(self.surfaces(), quality(level))
+    fn shade(&mut self, level: Level) -> Result<Option<Duration>, EngineError> {
+        self.renderer.shade(self.surfaces(), level.quality())
     }
 
-    fn shade_with_shadows(&mut self, level: usize) -> Result<Option<Duration>, EngineError> {
+    fn shade_with_shadows(&mut self, level: Level) -> Result<Option<Duration>, EngineError> {
         let Shadows::Rays(shadow_rays, filter) = Shadows::default() else { return self.shade(level) };
         if self.shadowed.as_ref().is_none_or(|(of, _)| *of != level) {
-            let options = ShadeOptions { quality: quality(level), shadow_rays, ..ShadeOptions::default() };
+            let options = ShadeOptions { quality: level.quality(), shadow_rays, ..ShadeOptions::default() };
             let view = |surfaces| {
                 let options = ShadeOptions { surfaces, ..options };
                 self.renderer.shadowed(&self.buffers, options, (filter, ShadowHistory::Off))
@@ -305,7 +305,7 @@ impl<'a> Viewer<'a> {
     }
 
     fn draw_theirs(&mut self, seen: &Seen) -> Result<(), EngineError> {
-        let of = (seen.clone(), 0);
+        let of = (seen.clone(), Level::default());
         let Some(renderer) = &mut self.yardstick else { return Ok(()) };
         if self.theirs.as_ref().is_some_and(|drawn| drawn.of == of) {
             return Ok(());
@@ -351,8 +351,8 @@ impl<'a> Viewer<'a> {
         }
         let surfaces = self.surfaces();
         let mut tried = vec![];
-        for level in levels() {
-            tried.push(self.try_shading(level.name.to_owned(), surfaces, level.quality)?);
+        for level in Level::ALL {
+            tried.push(self.try_shading(level.name().to_owned(), surfaces, level.quality())?);
         }
         for effect in (surfaces - Effects::MODEL).iter() {
             let left = without(surfaces, effect);
@@ -420,10 +420,6 @@ impl<'a> Viewer<'a> {
 
 /// Samples of the truth that are enough.
 pub const MOST_SAMPLES: u32 = 1 << 14;
-
-fn quality(level: usize) -> Quality {
-    levels().get(level).map_or_else(Quality::default, |level| level.quality)
-}
 
 /// The set without an effect, and without those that need it.
 fn without(surfaces: Effects, effect: Effects) -> Effects {

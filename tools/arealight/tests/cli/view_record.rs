@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// Every mode, a quarter of a second each; a lamp of the room is dragged, and then the view.
 const SCRIPT: &str = "
 0     key s          # without shadows
-0.25  key 4
+0.25  key 3
 0.5   key w
 1.5   key w
 1.75  key w
@@ -88,7 +88,7 @@ fn a_recording_shows_what_its_script_does() {
 
     // Modes and levels
     let word = |frame: usize, field: &str| frames[frame][field].as_str().unwrap().to_owned();
-    assert_eq!([word(0, "level"), word(1, "level")], ["exact", "everything"]);
+    assert_eq!([word(0, "level"), word(1, "level")], ["exact", "finest"]);
     assert_eq!(
         [2, 6, 7, 8, 9].map(|frame| word(frame, "mode")),
         ["wipe", "wipe", "picture", "error", "picture"]
@@ -111,7 +111,7 @@ fn a_recording_shows_what_its_script_does() {
     // What levels and effects cost
     let costs = frames[14]["costs"].as_array().unwrap();
     let names: Vec<&str> = costs.iter().map(|cost| cost["name"].as_str().unwrap()).collect();
-    assert_eq!(names[..5], ["exact", "two lobes", "both horizons", "everything", "formula"]);
+    assert_eq!(names[..5], ["exact", "two lobes", "finest", "half vectors", "formula"]);
     assert!(names.contains(&"without glossy"), "{names:?}");
     assert!(frames[13]["costs"].as_array().unwrap().is_empty());
 
