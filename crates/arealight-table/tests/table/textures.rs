@@ -114,7 +114,7 @@ fn an_extension_chooses_what_is_written() {
         assert!(!folder.path().join(name).exists());
         error
     };
-    let expected = "extension `png`: tables are written as .exr, .ktx2, .dds, .h (C) or .glsl";
+    let expected = "extension `png`: tables are written as .exr, .ktx2, .dds, .h (C), .glsl or .f32 (raw)";
     assert_eq!(refused("b.png", None), expected);
     assert_eq!(refused("b.exr", Some(Precision::Half)), "OpenEXR tables are written in 32-bit floats only");
     assert_eq!(refused("b.glsl", Some(Precision::Single)), "GLSL tables are written in 16-bit floats only");
