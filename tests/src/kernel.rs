@@ -71,8 +71,22 @@ impl TestEngine {
         inputs: &[Resource],
         count: usize,
     ) -> Vec<R> {
+        // A kernel that knows its list's length has no push constants
+        match kernel.push_constant_size() {
+            0 => self.run_list((kernel, specialization), inputs, (), count),
+            _ => self.run_list((kernel, specialization), inputs, count as u32, count),
+        }
+    }
+
+    fn run_list<R: Pod, C: Pod>(
+        &self,
+        kernel: (&'static Kernel, &[(u32, u32)]),
+        inputs: &[Resource],
+        constants: C,
+        count: usize,
+    ) -> Vec<R> {
         // SAFETY: The run waits, and the resources live until then.
-        let list = unsafe { self.passes().over_list((kernel, specialization), inputs, count as u32, count) };
+        let list = unsafe { self.passes().over_list(kernel, inputs, constants, count) };
         let list = list.expect("the resources fit");
         list.run().expect("it runs");
         list.results().expect("the results come back")

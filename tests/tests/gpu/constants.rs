@@ -14,7 +14,9 @@ fn glsl_constants(source: &str, prefix: &str) -> BTreeMap<String, f64> {
         let Some(declaration) = line.strip_prefix("const ") else { continue };
         let (_kind, rest) = declaration.split_once(' ').expect("const TYPE NAME = VALUE;");
         let (name, value) = rest.split_once(" = ").expect("NAME = VALUE;");
-        let value = value.split_once(';').expect("a statement").0.trim_end_matches('u');
+        // A line that goes on has no literal
+        let Some((value, _)) = value.split_once(';') else { continue };
+        let value = value.trim_end_matches('u');
         if let Some(name) = name.strip_prefix(prefix) {
             let number = match value.strip_prefix("0x") {
                 Some(digits) => f64::from(u32::from_str_radix(digits, 16).expect("hexadecimal digits")),
