@@ -1,9 +1,10 @@
 //! The picture that wgpu and the recorder make together, held against that of the engine in examples/rust,
-//! which makes every Vulkan call itself.
+//! which draws by Vulkan itself.
 
 use arealight_examples::deferred::Deferred;
-use arealight_examples::gpu::{Instance, Semaphores};
+use arealight_examples::host_options;
 use arealight_examples::picture::Picture;
+use arealight_host::{Host, Semaphores};
 use arealight_wgpu_example::{Gpu, draw};
 
 const SIZE: [u32; 2] = [160, 100];
@@ -13,9 +14,8 @@ const SIZE: [u32; 2] = [160, 100];
 const TOLERANCE: f32 = 1e-4;
 
 fn of_rust_example(seconds: f64) -> Picture {
-    let instance = Instance::new().unwrap();
-    let gpu = arealight_examples::gpu::Gpu::new(&instance).unwrap();
-    let mut engine = Deferred::new(&gpu, SIZE).unwrap();
+    let host = Host::new(host_options()).unwrap();
+    let mut engine = Deferred::new(&host, SIZE).unwrap();
     engine.frame(seconds, |_, _| Ok(Semaphores::default())).unwrap();
     engine.picture().unwrap()
 }
