@@ -110,7 +110,7 @@ run_second_driver() {
 
 # Builds the checker once, without optimisation: about a minute.
 check_licences() {
-    cargo deny --version >/dev/null 2>&1 || cargo install cargo-deny --locked --debug --quiet || return 1
+    cargo deny --version >/dev/null 2>&1 || cargo install cargo-deny@0.20.2 --locked --debug --quiet || return 1
     cargo deny --locked check licenses sources
 }
 
