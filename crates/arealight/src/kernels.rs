@@ -53,8 +53,8 @@ impl Kernel {
         self.reflection().local_size
     }
 
-    /// Size of the push constants in bytes, of the struct of [`crate::gpu`] named for the kernel. A pass has one
-    /// struct, though a kernel of it may declare only the first members.
+    /// Size of the push constants in bytes, of the struct of [`crate::gpu`] named for the kernel. A pass has
+    /// one struct, though a kernel of it may declare only the first members.
     pub fn push_constant_size(&self) -> u32 {
         let of_pass = self.pass.iter().map(|kernel| kernel.reflection().push_constant_size);
         of_pass.fold(self.reflection().push_constant_size, u32::max)

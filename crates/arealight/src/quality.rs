@@ -1,4 +1,5 @@
-//! Quality levels, chosen by the host for each pass: a [`Level`] by its name, or each choice in a [`Quality`].
+//! Quality levels, chosen by the host for each pass: a [`Level`] by its name, or each choice in a
+//! [`Quality`].
 
 /// How the arcs that a polygon's edges subtend are summed to a form factor.
 ///
