@@ -135,9 +135,11 @@ impl Layouts {
             .call("vkCreateDescriptorSetLayout")?;
 
         let set_layouts: Vec<_> = std::iter::once(self.set_layout).chain(self.host_set).collect();
-        let ranges = [vk::PushConstantRange::default()
+        let range = vk::PushConstantRange::default()
             .stage_flags(vk::ShaderStageFlags::COMPUTE)
-            .size(self.kernel.push_constant_size())];
+            .size(self.kernel.push_constant_size());
+        // Vulkan takes no empty range
+        let ranges: Vec<_> = Some(range).filter(|range| range.size > 0).into_iter().collect();
         let info =
             vk::PipelineLayoutCreateInfo::default().set_layouts(&set_layouts).push_constant_ranges(&ranges);
         // SAFETY: as above.

@@ -202,13 +202,16 @@ impl ComputePass {
         }
     }
 
-    /// Binds the pipeline and its push constants.
+    /// Binds the pipeline and its push constants, if the kernel has any.
     unsafe fn bind(&self, command_buffer: vk::CommandBuffer, constants: &[u8]) {
         let (device, layout) = (&self.layouts.context().device, self.layouts.pipeline_layout());
         // SAFETY: the caller vouches for the command buffer; the pipeline is ours and live.
         unsafe {
             device.cmd_bind_pipeline(command_buffer, vk::PipelineBindPoint::COMPUTE, self.pipeline);
-            device.cmd_push_constants(command_buffer, layout, vk::ShaderStageFlags::COMPUTE, 0, constants);
+            if !constants.is_empty() {
+                let stage = vk::ShaderStageFlags::COMPUTE;
+                device.cmd_push_constants(command_buffer, layout, stage, 0, constants);
+            }
         }
     }
 }
