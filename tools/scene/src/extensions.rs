@@ -13,9 +13,18 @@ pub(crate) const DRACO: &str = "KHR_draco_mesh_compression";
 pub(crate) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 pub(crate) const PUNCTUAL_LIGHTS: &str = "KHR_lights_punctual";
 
-/// What is read; part of a [`KHR_materials`](COSTS_LOOKS) extension may be left out, which is said where a
-/// material has it.
-const READ: [&str; 20] = [
+pub(crate) const ANISOTROPY: &str = "KHR_materials_anisotropy";
+pub(crate) const CLEARCOAT: &str = "KHR_materials_clearcoat";
+pub(crate) const DIFFUSE_TRANSMISSION: &str = "KHR_materials_diffuse_transmission";
+pub(crate) const IRIDESCENCE: &str = "KHR_materials_iridescence";
+pub(crate) const SHEEN: &str = "KHR_materials_sheen";
+
+/// Extensions of materials that are read here; the gltf crate reads others. Those that are not read are said
+/// where a material has them.
+pub(crate) const OF_MATERIALS: [&str; 5] = [ANISOTROPY, CLEARCOAT, DIFFUSE_TRANSMISSION, IRIDESCENCE, SHEEN];
+
+/// What else is read.
+const READ: [&str; 12] = [
     AREA_LIGHTS,
     INSTANCING,
     MESHOPT[0],
@@ -23,14 +32,6 @@ const READ: [&str; 20] = [
     WEBP,
     DRACO,
     PUNCTUAL_LIGHTS,
-    "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",
-    "KHR_materials_diffuse_transmission",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_iridescence",
-    "KHR_materials_sheen",
-    "KHR_materials_specular",
     "KHR_mesh_quantization",
     "KHR_node_visibility",
     "KHR_texture_transform",

@@ -117,26 +117,7 @@ fn check_indices(scene: &Scene) -> Result<(), BufferError> {
         check(&|| format!("triangles[{i}].material"), triangle.material, scene.materials.len())?;
     }
     for (i, material) in scene.materials.iter().enumerate() {
-        let textures = [
-            ("base_color_texture", material.base_color_texture),
-            ("metallic_roughness_texture", material.metallic_roughness_texture),
-            ("specular_texture", material.specular_texture),
-            ("specular_color_texture", material.specular_color_texture),
-            ("normal_texture", material.normal_texture),
-            ("emission_texture", material.emission_texture),
-            ("coat_texture", material.coat_texture),
-            ("coat_roughness_texture", material.coat_roughness_texture),
-            ("coat_normal_texture", material.coat_normal_texture),
-            ("sheen_color_texture", material.sheen_color_texture),
-            ("sheen_roughness_texture", material.sheen_roughness_texture),
-            ("anisotropy_texture", material.anisotropy_texture),
-            ("film_texture", material.film_texture),
-            ("film_thickness_texture", material.film_thickness_texture),
-            ("transmission_texture", material.transmission_texture),
-            ("transmission_color_texture", material.transmission_color_texture),
-        ];
-        for (name, texture) in textures {
-            let Some(texture) = texture else { continue };
+        for (name, texture) in material.textures() {
             check(&|| format!("materials[{i}].{name}"), texture, scene.textures.len())?;
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::document::Document;
 use crate::error::SceneError;
+use crate::extensions::{ANISOTROPY, CLEARCOAT, DIFFUSE_TRANSMISSION, IRIDESCENCE, OF_MATERIALS, SHEEN};
 use crate::images::{TextureReader, Textures};
 use crate::messages::Messages;
 use crate::scene::SceneMaterial;
@@ -62,27 +63,28 @@ pub(crate) fn read(
 }
 
 impl SceneMaterial {
-    /// Whether it has any texture.
-    pub(crate) fn is_textured(&self) -> bool {
-        let textures = [
-            self.base_color_texture,
-            self.metallic_roughness_texture,
-            self.specular_texture,
-            self.specular_color_texture,
-            self.normal_texture,
-            self.emission_texture,
-            self.coat_texture,
-            self.coat_roughness_texture,
-            self.coat_normal_texture,
-            self.sheen_color_texture,
-            self.sheen_roughness_texture,
-            self.anisotropy_texture,
-            self.film_texture,
-            self.film_thickness_texture,
-            self.transmission_texture,
-            self.transmission_color_texture,
-        ];
-        textures.iter().any(Option::is_some)
+    /// Its textures, with the names of their fields.
+    pub(crate) fn textures(&self) -> impl Iterator<Item = (&'static str, u32)> {
+        [
+            ("base_color_texture", self.base_color_texture),
+            ("metallic_roughness_texture", self.metallic_roughness_texture),
+            ("specular_texture", self.specular_texture),
+            ("specular_color_texture", self.specular_color_texture),
+            ("normal_texture", self.normal_texture),
+            ("emission_texture", self.emission_texture),
+            ("coat_texture", self.coat_texture),
+            ("coat_roughness_texture", self.coat_roughness_texture),
+            ("coat_normal_texture", self.coat_normal_texture),
+            ("sheen_color_texture", self.sheen_color_texture),
+            ("sheen_roughness_texture", self.sheen_roughness_texture),
+            ("anisotropy_texture", self.anisotropy_texture),
+            ("film_texture", self.film_texture),
+            ("film_thickness_texture", self.film_thickness_texture),
+            ("transmission_texture", self.transmission_texture),
+            ("transmission_color_texture", self.transmission_color_texture),
+        ]
+        .into_iter()
+        .filter_map(|(field, texture)| Some((field, texture?)))
     }
 }
 
@@ -327,10 +329,8 @@ impl Reader<'_, '_> {
     }
 
     fn warn_of_unknown_extensions(&mut self, source: &json::Material) {
-        let unknown = source.extensions.iter().flat_map(|e| e.others.keys()).filter(|name| {
-            ![ANISOTROPY, CLEARCOAT, DIFFUSE_TRANSMISSION, IRIDESCENCE, SHEEN].contains(&name.as_str())
-        });
-        for extension in unknown {
+        let others = source.extensions.iter().flat_map(|e| e.others.keys());
+        for extension in others.filter(|name| !OF_MATERIALS.contains(&name.as_str())) {
             self.warn(format!("{extension} is not supported: ignored"));
         }
     }
@@ -351,12 +351,6 @@ pub(crate) fn has_tangents(material: &json::Material) -> bool {
     let coat_is_bent = extension(CLEARCOAT).is_some_and(|coat| coat.get("clearcoatNormalTexture").is_some());
     material.normal_texture.is_some() || coat_is_bent || extension(ANISOTROPY).is_some()
 }
-
-const ANISOTROPY: &str = "KHR_materials_anisotropy";
-const CLEARCOAT: &str = "KHR_materials_clearcoat";
-const DIFFUSE_TRANSMISSION: &str = "KHR_materials_diffuse_transmission";
-const IRIDESCENCE: &str = "KHR_materials_iridescence";
-const SHEEN: &str = "KHR_materials_sheen";
 
 /// Above it, the library takes a film's index of refraction for this.
 const MAX_FILM_IOR: f32 = 100.0;

@@ -55,7 +55,7 @@ pub(crate) fn place<'a>(
 
 /// Warns of texture coordinates and tangents that a material needs and its primitive has not.
 fn warn_of_missing(primitive: &Primitive, material: &SceneMaterial, messages: &mut Messages) {
-    if !primitive.has_uvs && material.is_textured() {
+    if !primitive.has_uvs && material.textures().next().is_some() {
         let text = format!("has no TEXCOORD_{}: its textures are read at (0, 0)", primitive.uv_set);
         messages.warn(primitive.field.as_str(), text);
     } else if !primitive.has_tangents && material.anisotropy_strength > 0.0 {

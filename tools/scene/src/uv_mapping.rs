@@ -4,6 +4,7 @@
 //! they differ the first texture's is drawn, with a warning; what a mesh lights is by its emissive texture's
 //! own.
 
+use crate::extensions::OF_MATERIALS;
 use glam::{DVec2, Vec2};
 use gltf::json;
 use serde_json::Value;
@@ -107,13 +108,7 @@ fn textures(material: &json::Material) -> Vec<(String, UvMapping)> {
     .into_iter()
     .flatten()
     .collect();
-    for extension in [
-        "KHR_materials_clearcoat",
-        "KHR_materials_sheen",
-        "KHR_materials_anisotropy",
-        "KHR_materials_iridescence",
-        "KHR_materials_diffuse_transmission",
-    ] {
+    for extension in OF_MATERIALS {
         let said =
             material.extensions.as_ref().and_then(|e| e.others.get(extension)).and_then(Value::as_object);
         for (name, info) in said.into_iter().flatten().filter(|(name, _)| name.ends_with("Texture")) {
