@@ -44,6 +44,8 @@ const uint EFFECT_MULTIPLE_SCATTERING = 2097152u;
 const uint EFFECT_TRANSMISSION = 4194304u;
 // Some surface has a thin film.
 const uint EFFECT_THIN_FILM = 8388608u;
+// Some thin surface is glass: for the host, which has the pass over the other side reflect specularly.
+const uint EFFECT_GLASS = 16777216u;
 
 // Some polygon is not a convex quad without an image: Effects::BEYOND_QUADS in Rust.
 const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;

@@ -4,11 +4,16 @@
 // Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four; COAT_BINDING,
 // SHEEN_BINDING, ANISOTROPY_BINDING and FILM_BINDING where it shades coats, sheen, specular lobes of two
 // roughnesses or rough diffuse ones, and thin films; G_BUFFER_LAYOUT where it knows other layouts than our
-// own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of its own.
+// own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of its own. With effects.glsl
+// base colour and metalness may be of what is let through, arealight_surface_let_through.
 
 #include "arealight/options.glsl"
 #include "arealight/surface.glsl"
 #include "octahedron.glsl"
+
+#ifndef EFFECTS_GLSL
+const bool IS_TRANSMITTED = false;
+#endif
 
 // How surfaces are stored: the same as arealight::plan::GBufferLayout, which says what each image holds.
 const int G_BUFFER_AREALIGHT = 0;
@@ -139,23 +144,34 @@ ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
     surface.coat = load_coat(pixel);
     surface.sheen = load_sheen(pixel);
     surface.film = load_film(pixel);
+    vec3 f0 = vec3(0.04);
+    float f90 = 1.0;
+    float metalness;
     if (G_BUFFER_LAYOUT == G_BUFFER_UNREAL) {
         surface.normal = normal.xyz * 2.0 - 1.0;
         surface.roughness = specular.b;
-        arealight_surface_from_metalness(surface, base_color.rgb, specular.r, vec3(0.08 * specular.g), 1.0);
+        metalness = specular.r;
+        f0 = vec3(0.08 * specular.g);
     } else if (G_BUFFER_LAYOUT == G_BUFFER_UNITY) {
         surface.normal = normal.xyz;
         surface.roughness = 1.0 - normal.w;
-        float metalness = clamp((specular.r - 0.04) * (1.0 / 0.96), 0.0, 1.0);
-        arealight_surface_from_metalness(surface, base_color.rgb, metalness, vec3(0.04), 1.0);
+        metalness = clamp((specular.r - 0.04) * (1.0 / 0.96), 0.0, 1.0);
     } else if (G_BUFFER_LAYOUT == G_BUFFER_OCTAHEDRAL) {
         surface.normal = from_octahedron(normal.xy);
         surface.roughness = specular.g;
-        arealight_surface_from_metalness(surface, base_color.rgb, specular.b, vec3(0.04), 1.0);
+        metalness = specular.b;
     } else {
         surface.normal = normal.xyz;
         surface.roughness = normal.w;
-        arealight_surface_from_metalness(surface, base_color.rgb, base_color.a, specular.rgb, specular.a);
+        metalness = base_color.a;
+        f0 = specular.rgb;
+        f90 = specular.a;
+    }
+    if (IS_TRANSMITTED) {
+        arealight_surface_let_through(surface, base_color.rgb, metalness, f0, f90);
+        surface.film.weight *= 1.0 - metalness; // a pane's lobe has none
+    } else {
+        arealight_surface_from_metalness(surface, base_color.rgb, metalness, f0, f90);
     }
     load_anisotropy(pixel, surface);
     return surface;

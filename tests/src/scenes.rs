@@ -8,51 +8,17 @@ use glam::{DVec3, Vec2, Vec3, Vec4};
 pub fn lambert(albedo: f32) -> Material {
     Material {
         base_color: Vec3::splat(albedo),
-        metalness: 0.0,
         roughness: 0.6,
         dielectric_f0: Vec3::ZERO,
         dielectric_f90: 0.0,
-        coat: 0.0,
-        coat_roughness: 0.0,
-        sheen_color: Vec3::ZERO,
-        sheen_roughness: 0.0,
-        film: None,
-        transmission: 0.0,
-        transmission_color: Vec3::ONE,
+        ..Material::default()
     }
 }
 
 /// A material seen from both sides, without any texture.
 pub fn without_textures(material: Material) -> SceneMaterial {
-    SceneMaterial {
-        name: "plain".into(),
-        material,
-        base_alpha: 1.0,
-        emission: Vec3::ZERO,
-        base_color_texture: None,
-        metallic_roughness_texture: None,
-        specular_texture: None,
-        specular_color_texture: None,
-        normal_texture: None,
-        normal_scale: 1.0,
-        emission_texture: None,
-        coat_texture: None,
-        coat_roughness_texture: None,
-        coat_normal_texture: None,
-        coat_normal_scale: 1.0,
-        sheen_color_texture: None,
-        sheen_roughness_texture: None,
-        anisotropy_strength: 0.0,
-        anisotropy_rotation: 0.0,
-        anisotropy_texture: None,
-        film_texture: None,
-        film_thickness_texture: None,
-        film_least_thickness: 0.0,
-        transmission_texture: None,
-        transmission_color_texture: None,
-        alpha_cutoff: None,
-        double_sided: true,
-    }
+    let name = "plain".into();
+    SceneMaterial { name, material, base_alpha: 1.0, double_sided: true, ..SceneMaterial::default() }
 }
 
 /// Flat triangles of one material; their normals face where their vertices run counter-clockwise.

@@ -94,6 +94,10 @@
 // Some surface has a thin film that its reflectances lack: AREALIGHT_PLANE_FILM is read.
 #define AREALIGHT_EFFECT_THIN_FILM 8388608
 
+// Some thin surface is glass. A pass ignores it: give the pass with AREALIGHT_EFFECT_TRANSMISSION
+// AREALIGHT_EFFECT_GLOSSY, and put the part of its base colour that is not diffused into its metalness.
+#define AREALIGHT_EFFECT_GLASS 16777216
+
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 

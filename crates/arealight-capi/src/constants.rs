@@ -48,6 +48,9 @@ pub const AREALIGHT_EFFECT_MULTIPLE_SCATTERING: u32 = 2097152;
 pub const AREALIGHT_EFFECT_TRANSMISSION: u32 = 4194304;
 /// Some surface has a thin film that its reflectances lack: AREALIGHT_PLANE_FILM is read.
 pub const AREALIGHT_EFFECT_THIN_FILM: u32 = 8388608;
+/// Some thin surface is glass. A pass ignores it: give the pass with AREALIGHT_EFFECT_TRANSMISSION
+/// AREALIGHT_EFFECT_GLOSSY, and put the part of its base colour that is not diffused into its metalness.
+pub const AREALIGHT_EFFECT_GLASS: u32 = 16777216;
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
 /// As EXACT, and relative precision for lights that look small.

@@ -118,6 +118,7 @@ mod tests {
             (c::AREALIGHT_EFFECT_MULTIPLE_SCATTERING, Effects::MULTIPLE_SCATTERING),
             (c::AREALIGHT_EFFECT_TRANSMISSION, Effects::TRANSMISSION),
             (c::AREALIGHT_EFFECT_THIN_FILM, Effects::THIN_FILM),
+            (c::AREALIGHT_EFFECT_GLASS, Effects::GLASS),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");
         }

@@ -35,6 +35,9 @@ pub struct Material {
     pub transmission: f32,
     /// Linear Rec. 709 colour of that light in [0, 1].
     pub transmission_color: Vec3,
+    /// How much of a thin dielectric is a pane, which lets light of the base colour through without diffusing
+    /// it, in [0, 1]; 0 for none ([`Effects::GLASS`](arealight::Effects::GLASS)).
+    pub glass: f32,
 }
 
 impl Default for Material {
@@ -53,6 +56,7 @@ impl Default for Material {
             film: None,
             transmission: 0.0,
             transmission_color: Vec3::ONE,
+            glass: 0.0,
         }
     }
 }
@@ -220,7 +224,8 @@ impl Material {
         let alpha = |roughness: f32| (f64::from(roughness) * f64::from(roughness)).max(arealight::MIN_ALPHA);
         let weight = f64::from(self.coat);
         Surface {
-            diffuse_albedo: base * (1.0 - metalness) * (1.0 - f64::from(self.transmission)),
+            diffuse_albedo: base
+                * ((1.0 - metalness) * (1.0 - f64::from(self.transmission)) * (1.0 - f64::from(self.glass))),
             f0: self.dielectric_f0.as_dvec3().lerp(base, metalness),
             f90: f64::from(self.dielectric_f90) * (1.0 - metalness) + metalness,
             alpha: alpha(self.roughness),
@@ -243,11 +248,22 @@ impl Material {
     }
 
     /// Its other side, for light that is let through: what a surface of the opposite normal, seen from the
-    /// mirror image of the view, reflects.
+    /// mirror image of the view, reflects. Of a pane that is the specular lobe, with what Schlick's term
+    /// leaves in the place of the term (`KHR_materials_transmission`).
     pub fn other_side(&self) -> Surface {
-        let part = f64::from(self.transmission) * (1.0 - f64::from(self.metalness));
-        let Surface { interface, .. } = self.coupled_surface();
-        Surface { diffuse_albedo: self.transmission_color.as_dvec3() * part, interface, ..Surface::default() }
+        let dielectric = 1.0 - f64::from(self.metalness);
+        let pane = self.base_color.as_dvec3() * (dielectric * f64::from(self.glass));
+        let diffused = dielectric * f64::from(self.transmission) * (1.0 - f64::from(self.glass));
+        let luminance = pane.dot(DVec3::new(0.2126, 0.7152, 0.0722));
+        let Surface { interface, alpha, .. } = self.coupled_surface();
+        Surface {
+            diffuse_albedo: self.transmission_color.as_dvec3() * diffused,
+            f0: pane * (1.0 - self.dielectric_f0.as_dvec3()),
+            f90: luminance * (1.0 - f64::from(self.dielectric_f90)),
+            alpha,
+            interface,
+            ..Surface::default()
+        }
     }
 
     /// The same with the Lambert lobe coupled, as glTF has it.

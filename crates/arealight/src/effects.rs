@@ -69,6 +69,10 @@ bitflags::bitflags! {
         /// ([`SpecularLobes::HalfVectors`](crate::SpecularLobes::HalfVectors)) show each light at its own
         /// facets' angle.
         const THIN_FILM = 1 << 23;
+        /// Some thin surface lets light through without diffusing it: a pane of glass, smooth or rough. The
+        /// pass over the other side has the GLOSSY lobe then, and the metalness of what it reads is the part
+        /// of its base colour that is let through so ([`Effects::passes`]). A pass itself ignores it.
+        const GLASS = 1 << 24;
     }
 }
 
@@ -89,7 +93,8 @@ impl Effects {
         .union(Self::COUPLED_BY_ALBEDO)
         .union(Self::COAT_BY_ALBEDO)
         .union(Self::MULTIPLE_SCATTERING)
-        .union(Self::TRANSMISSION);
+        .union(Self::TRANSMISSION)
+        .union(Self::GLASS);
 
     /// What surfaces need, whatever the lights.
     pub const SURFACES: Self = Self::DIFFUSE
@@ -104,16 +109,19 @@ impl Effects {
         .union(Self::THIN_FILM);
 
     /// What each pass over surfaces with these effects has, its radiance added to that of the one before:
-    /// what is reflected, and with [`Effects::TRANSMISSION`] what is let through, by an ideally diffusing
-    /// sheet below the same interface.
+    /// what is reflected, and what is let through below the same interface, with [`Effects::TRANSMISSION`] by
+    /// an ideally diffusing sheet, with [`Effects::GLASS`] by a pane.
     pub fn passes(self) -> impl Iterator<Item = Self> {
         let below_interface = Self::COUPLED | Self::SPECULAR_INPUT | Self::THIN_FILM | Self::TRANSMISSION;
-        let lets_through = self.contains(Self::TRANSMISSION);
-        let reflects = !lets_through || self.intersects(Self::LOBES);
-        let transmitted = (self & below_interface) | Self::DIFFUSE;
-        [reflects.then_some(self - Self::TRANSMISSION), lets_through.then_some(transmitted)]
-            .into_iter()
-            .flatten()
+        let lets_through = Self::TRANSMISSION | Self::GLASS;
+        let reflects = !self.intersects(lets_through) || self.intersects(Self::LOBES);
+        let mut transmitted = (self & below_interface) | Self::TRANSMISSION;
+        transmitted.set(Self::DIFFUSE, self.contains(Self::TRANSMISSION));
+        if self.contains(Self::GLASS) {
+            transmitted |= Self::GLOSSY | (self & Self::ANISOTROPY);
+        }
+        let transmitted = self.intersects(lets_through).then_some(transmitted);
+        [reflects.then_some(self - lets_through), transmitted].into_iter().flatten()
     }
 
     /// The effects in words, in the order of their bits, for people to read.
@@ -141,6 +149,7 @@ impl Effects {
             (Self::MULTIPLE_SCATTERING, "multiple_scattering"),
             (Self::TRANSMISSION, "transmission"),
             (Self::THIN_FILM, "thin_film"),
+            (Self::GLASS, "glass"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))
@@ -164,6 +173,11 @@ mod tests {
         assert!(opaque.passes().eq([opaque]));
         let transmitted = Effects::DIFFUSE | Effects::COUPLED | Effects::TRANSMISSION;
         assert!((opaque | Effects::TRANSMISSION).passes().eq([opaque, transmitted]));
+        // A pane has the lobe that is mirrored, of a paper pane both
+        let pane = Effects::GLOSSY | Effects::COUPLED | Effects::TRANSMISSION;
+        assert!((opaque | Effects::GLASS).passes().eq([opaque, pane]));
+        let both = (opaque | Effects::GLASS | Effects::TRANSMISSION).passes();
+        assert!(both.eq([opaque, pane | Effects::DIFFUSE]));
         // A film is part of the interface
         let below_film = (opaque | Effects::THIN_FILM | Effects::TRANSMISSION).passes();
         assert!(below_film.eq([opaque, transmitted].map(|pass| pass | Effects::THIN_FILM)));

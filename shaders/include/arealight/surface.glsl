@@ -74,6 +74,17 @@ void arealight_surface_from_metalness(inout ArealightSurface surface, vec3 base_
     surface.interface_f90 = dielectric_f90;
 }
 
+// What a thin surface lets through, for arealight_other_side: `color`, a part of it as through a pane
+// (KHR_materials_transmission, a GGX lobe about the line of sight), the rest diffused. The pane's lobe gets
+// what Schlick's term of the interface leaves, exactly: the term is linear, and so is what is left of it.
+// All in [0, 1]. Where the grazing reflectance is below 1 the lobe is grey at grazing incidence.
+void arealight_surface_let_through(inout ArealightSurface surface, vec3 color, float pane,
+                                   vec3 dielectric_f0, float dielectric_f90) {
+    arealight_surface_from_metalness(surface, color, pane, dielectric_f0, dielectric_f90);
+    surface.f0 = color * pane * (1.0 - dielectric_f0);
+    surface.f90 = arealight_luminance(color) * pane * (1.0 - dielectric_f90);
+}
+
 // Perceptual roughness along the tangent, of KHR_materials_anisotropy: of a roughness, which is that across
 // it, and an anisotropyStrength, both in [0, 1].
 float arealight_gltf_anisotropy(float roughness, float strength) {
@@ -130,7 +141,7 @@ ArealightFrame arealight_surface_frame(vec3 normal, vec3 view) {
 
 // A thin surface from behind, for light that it lets through to the viewer: it faces away from the viewer,
 // who is as far behind it as before it. Its members but normal and view are for the caller to set to what is
-// let through: diffuse_albedo, of an ideally diffusing sheet (KHR_materials_diffuse_transmission). What it
+// let through (arealight_surface_let_through, or of a sheet that diffuses it diffuse_albedo alone). What it
 // reflects so is the mirror image of what the front would, exactly.
 ArealightSurface arealight_other_side(ArealightSurface surface) {
     surface.normal = -surface.normal;

@@ -78,8 +78,7 @@ fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
                 let [weight, ior, thickness, _] = films[i].to_array().map(f64::from);
                 ThinFilm { weight, ior, thickness }
             }),
-            transmission: 0.0,
-            transmission_color: Vec3::ONE,
+            ..arealight_oracle::material::Material::default()
         };
         let normal = Some(from_octahedron(coats[i].z.into(), coats[i].w.into()));
         let surface = material.coupled_surface();

@@ -4,7 +4,8 @@ use arealight::Plane;
 use arealight::gpu::GpuBvhNode;
 use arealight_engine::SceneRenderer;
 use arealight_engine::host::Usage;
-use arealight_scene::SceneBuffers;
+use arealight_oracle::material::Material;
+use arealight_scene::{SceneBuffers, SceneMaterial};
 use arealight_tests::{Comparison, Random, TestEngine};
 use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
 use glam::DVec3;
@@ -47,49 +48,16 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
             count: uvs.len() as u32,
         }],
         triangles: uvs.iter().enumerate().map(triangle).collect(),
-        materials: vec![GpuMaterial {
-            base_color: [1.0; 3],
-            metalness: 1.0,
-            emission: [0.0; 3],
-            roughness: 1.0,
-            dielectric_f0: [0.04; 3],
-            dielectric_f90: 1.0,
-            base_color_texture: GpuMaterial::NO_TEXTURE,
-            // Linear, so that the texel's green and blue come out as they are
-            metallic_roughness_texture: 0,
-            normal_texture: GpuMaterial::NO_TEXTURE,
-            normal_scale: 1.0,
-            flags: 0,
-            alpha_cutoff: 0.0,
-            base_alpha: 1.0,
-            emission_texture: GpuMaterial::NO_TEXTURE,
-            coat: 0.0,
-            coat_roughness: 0.0,
-            coat_texture: GpuMaterial::NO_TEXTURE,
-            coat_roughness_texture: GpuMaterial::NO_TEXTURE,
-            coat_normal_texture: GpuMaterial::NO_TEXTURE,
-            coat_normal_scale: 1.0,
-            sheen_color_texture: GpuMaterial::NO_TEXTURE,
-            sheen_roughness_texture: GpuMaterial::NO_TEXTURE,
-            sheen_color: [0.0; 3],
-            sheen_roughness: 0.0,
-            anisotropy_texture: GpuMaterial::NO_TEXTURE,
-            anisotropy_strength: 0.0,
-            anisotropy_direction: [1.0, 0.0],
-            film_weight: 0.0,
-            film_ior: 1.0,
-            film_least_thickness: 0.0,
-            film_thickness: 0.0,
-            film_texture: GpuMaterial::NO_TEXTURE,
-            film_thickness_texture: GpuMaterial::NO_TEXTURE,
-            transmission_texture: GpuMaterial::NO_TEXTURE,
-            transmission_color_texture: GpuMaterial::NO_TEXTURE,
-            transmission_color: [1.0; 3],
-            transmission: 0.0,
-            specular_texture: GpuMaterial::NO_TEXTURE,
-            specular_color_texture: GpuMaterial::NO_TEXTURE,
-            reserved: [0; 2],
-        }],
+        // Linear, so that the texel's green and blue come out as they are
+        materials: vec![
+            (&SceneMaterial {
+                material: Material { metalness: 1.0, ..Material::default() },
+                base_alpha: 1.0,
+                metallic_roughness_texture: Some(0),
+                ..SceneMaterial::default()
+            })
+                .into(),
+        ],
         textures: vec![texture],
         texels: texels.to_vec(),
     }

@@ -115,8 +115,11 @@ struct Lobes {
     CoatLobe coat;
     SheenLobe sheen;
     ArealightThinFilm film; // above the reflectances
-    vec3 transmitted; // albedo of what is let through, below the interface
-    float transmission_probability; // of drawing from it
+    vec3 transmitted; // albedo of what is let through and diffused, below the interface
+    vec3 pane; // of what is let through by the GGX lobe about the line of sight
+    vec4 above_pane; // its interface's reflectances at normal incidence, and at grazing incidence
+    float transmission_probability; // of drawing from either
+    float pane_probability; // and then of drawing from the second
 };
 
 // `base`: about what the lobes below the coat reflect.
@@ -200,7 +203,9 @@ SheenLobe load_sheen_lobe(ArealightFrame frame, ArealightSheen sheen) {
     return SheenLobe(sheen.color, roughness, max(1.0 - arealight_max_component(sheen.color) * albedo, 0.0));
 }
 
-Lobes load_lobes(ArealightSurface surface, vec3 ray_origins[2], vec3 transmitted) {
+// `through`: the albedo of what is let through, and the part of it that is not diffused; `dielectric`: the
+// reflectances of its interface.
+Lobes load_lobes(ArealightSurface surface, vec3 ray_origins[2], vec4 through, vec4 dielectric) {
     ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
     vec2 roughness = vec2(surface.anisotropy.roughness, surface.roughness);
     vec2 alpha = max(roughness * roughness, vec2(AREALIGHT_MIN_ALPHA));
@@ -208,7 +213,7 @@ Lobes load_lobes(ArealightSurface surface, vec3 ray_origins[2], vec3 transmitted
         : arealight_surface_axis(frame, surface.anisotropy.tangent);
     float diffuse = dot(surface.diffuse_albedo, vec3(1.0 / 3.0));
     float glossy = dot(mix(surface.f0, vec3(surface.f90), 0.1), vec3(1.0 / 3.0));
-    float let_through = dot(transmitted, vec3(1.0 / 3.0));
+    float let_through = dot(through.rgb, vec3(1.0 / 3.0));
     float transmission_probability = let_through > 0.0
         ? clamp(let_through / (let_through + glossy + diffuse), 0.25, 0.75) : 0.0;
     float probability = glossy > 0.0 ? clamp(glossy / (glossy + diffuse), 0.25, diffuse > 0.0 ? 0.9 : 1.0)
@@ -219,7 +224,8 @@ Lobes load_lobes(ArealightSurface surface, vec3 ray_origins[2], vec3 transmitted
                      surface.f90, axis, alpha,
                  probability, load_coat_lobe(frame, surface.coat, glossy + diffuse),
                      load_sheen_lobe(frame, surface.sheen), surface.film,
-                 transmitted, transmission_probability);
+                 through.rgb * (1.0 - through.a), through.rgb * through.a, dielectric,
+                 transmission_probability, through.a);
 }
 
 // A direction of the surface's frame in the frame of its GGX lobe, and back.
@@ -239,8 +245,11 @@ vec3 evaluate_transmitted(Lobes lobes, vec3 light) {
                       arealight_schlick_weight(lobes.view,
                                                arealight_normalize_or(lobes.view + mirrored,
                                                                       vec3(0.0, 0.0, 1.0))));
-    return lobes.transmitted * (AREALIGHT_INVERSE_PI * max(mirrored.z, 0.0)
-                                * (COUPLED != 0u ? 1.0 - above : 1.0));
+    vec3 diffused = lobes.transmitted * (AREALIGHT_INVERSE_PI * max(mirrored.z, 0.0)
+                                         * (COUPLED != 0u ? 1.0 - above : 1.0));
+    vec3 lobe = arealight_ggx_evaluate(to_axis(lobes, lobes.view), to_axis(lobes, mirrored), lobes.alpha,
+                                       1.0 - lobes.above_pane.rgb, 1.0 - lobes.above_pane.a);
+    return diffused + lobes.pane * lobe;
 }
 
 // f cos, all lobes.
@@ -281,7 +290,10 @@ vec3 evaluate(Lobes lobes, vec3 light) {
 // Zero where no lobe reflects light from there: below an opaque surface, and below its coat.
 float density(Lobes lobes, vec3 light) {
     if (light.z < 0.0) {
-        return AREALIGHT_INVERSE_PI * -light.z * lobes.transmission_probability;
+        float lobe = arealight_ggx_density(to_axis(lobes, lobes.view),
+                                           to_axis(lobes, vec3(light.xy, -light.z)), lobes.alpha);
+        return mix(AREALIGHT_INVERSE_PI * -light.z, lobe, lobes.pane_probability)
+            * lobes.transmission_probability;
     }
     float diffuse = AREALIGHT_INVERSE_PI * max(light.z, 0.0);
     float base = mix(diffuse, arealight_ggx_density(to_axis(lobes, lobes.view), to_axis(lobes, light),
@@ -301,7 +313,11 @@ vec3 sample_direction(Lobes lobes, inout RandomState random) {
     float choice = random_float(random);
     vec2 u = vec2(random_float(random), random_float(random));
     if (choice < lobes.transmission_probability) {
-        return -sample_cosine(u);
+        if (choice >= lobes.transmission_probability * lobes.pane_probability) {
+            return -sample_cosine(u);
+        }
+        vec3 mirrored = from_axis(lobes, arealight_ggx_sample(to_axis(lobes, lobes.view), lobes.alpha, u));
+        return vec3(mirrored.xy, -mirrored.z);
     }
     choice = (choice - lobes.transmission_probability) / (1.0 - lobes.transmission_probability);
     CoatLobe coat = lobes.coat;
@@ -494,8 +510,8 @@ void main() {
         return;
     }
     ArealightSurface surface = load_surface(pixel, position.xyz, constants.camera);
-    vec3 transmitted = texelFetch(g_transmitted, pixel, 0).rgb;
-    Lobes lobes = load_lobes(surface, load_ray_origins(surface, uint(position.w) - 1u), transmitted);
+    Lobes lobes = load_lobes(surface, load_ray_origins(surface, uint(position.w) - 1u),
+                             texelFetch(g_transmitted, pixel, 0), texelFetch(g_specular, pixel, 0));
     vec3 sum = vec3(0.0);
     for (uint index = 0u; index < constants.sample_count; index++) {
         RandomState random = random_begin(uvec3(pixel, constants.first_sample + index), constants.seed);

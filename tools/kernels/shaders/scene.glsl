@@ -74,8 +74,8 @@ struct ArealightGpuMaterial {
     float transmission;
     uint specular_texture;
     uint specular_color_texture;
-    uint reserved0;
-    uint reserved1;
+    uint glass_texture;
+    float glass;
 };
 
 struct ArealightGpuTexture {
@@ -126,6 +126,7 @@ struct ScenePoint {
     ArealightThinFilm film;
     // Albedo of what is let through; the base colour of what is not metal is less by that part
     vec3 transmitted;
+    float pane; // how much of that is not diffused
 };
 
 // The texel within the image, for texel coordinates from -1 to two repeats and one.
@@ -292,7 +293,12 @@ ScenePoint scene_point(BvhHit hit) {
         * (1.0 - point.metalness);
     point.transmitted = transmission * material.transmission_color
         * sample_texture(material.transmission_color_texture, uv).rgb;
-    point.base_color *= 1.0 - transmission;
+    // KHR_materials_transmission takes the place of what is diffused, on either side
+    float glass = material.glass * sample_texture(material.glass_texture, uv).r * (1.0 - point.metalness);
+    vec3 pane = glass * point.base_color;
+    point.transmitted = (1.0 - glass) * point.transmitted + pane;
+    point.pane = arealight_luminance(pane) / max(arealight_luminance(point.transmitted), 1e-30);
+    point.base_color *= (1.0 - glass) * (1.0 - transmission);
     point.emission = material.emission * sample_texture(material.emission_texture, uv).rgb;
     return point;
 }

@@ -89,5 +89,5 @@ void main() {
                                            point.anisotropy.roughness, 0.0));
     imageStore(out_film, pixel, vec4(point.film.weight, point.film.ior, point.film.thickness, 0.0));
     imageStore(out_transmitted, pixel, vec4(point.transmitted * (below_coat * below_sheen(point, -direction)),
-                                            0.0));
+                                            point.pane));
 }

@@ -250,8 +250,10 @@ pub struct GpuMaterial {
     pub specular_texture: u32,
     /// sRGB texture times `dielectric_f0`, which is cut off at `dielectric_f90` after it.
     pub specular_color_texture: u32,
-    /// Zero.
-    pub reserved: [u32; 2],
+    /// Linear texture: red times `glass`.
+    pub glass_texture: u32,
+    /// How much of the diffuse part a pane lets through undiffused instead, by its base colour.
+    pub glass: f32,
 }
 
 /// How far an orthographic camera's position is, in lengths of the direction to it: directions to it differ

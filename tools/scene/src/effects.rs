@@ -24,7 +24,7 @@ impl std::fmt::Display for RequiredEffect {
 type Needs = fn(&SceneMaterial) -> bool;
 
 /// What materials may need, and how it is known.
-const OF_MATERIALS: [(Effects, Needs); 10] = [
+const OF_MATERIALS: [(Effects, Needs); 11] = [
     (Effects::DIFFUSE, has_diffuse_lobe),
     (Effects::GLOSSY, has_glossy_lobe),
     (Effects::SPECULAR_INPUT, has_specular_input),
@@ -35,6 +35,7 @@ const OF_MATERIALS: [(Effects, Needs); 10] = [
     (Effects::ANISOTROPY, has_anisotropy),
     (Effects::TRANSMISSION, has_transmission),
     (Effects::THIN_FILM, has_film),
+    (Effects::GLASS, has_pane),
 ];
 
 /// What a scene needs and nothing else, each effect once, with its reason, in the order of their bits.
@@ -116,6 +117,10 @@ fn has_film(material: &SceneMaterial) -> bool {
 fn has_transmission(material: &SceneMaterial) -> bool {
     let Material { transmission, transmission_color, .. } = material.material;
     is_dielectric_somewhere(material) && transmission > 0.0 && transmission_color != Vec3::ZERO
+}
+
+fn has_pane(material: &SceneMaterial) -> bool {
+    material.material.glass > 0.0 && has_diffuse_lobe(material)
 }
 
 /// glTF couples the diffuse lobe of a dielectric with its Fresnel term, where it has one.

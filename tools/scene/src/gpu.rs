@@ -89,7 +89,7 @@ impl SceneBuffers {
             origin,
             triangles: blockers.order.iter().map(|&i| unordered[i as usize]).collect(),
             nodes: blockers.nodes,
-            materials: scene.materials.iter().map(pack_material).collect(),
+            materials: scene.materials.iter().map(GpuMaterial::from).collect(),
             textures: scene.textures.iter().map(texture).collect(),
             texels,
         })
@@ -180,52 +180,55 @@ fn pack_direction(direction: Vec3) -> u32 {
     low | high << 16
 }
 
-fn pack_material(material: &SceneMaterial) -> GpuMaterial {
-    let texture = |index: Option<u32>| index.unwrap_or(GpuMaterial::NO_TEXTURE);
-    let flag = |on: bool, flag: u32| if on { flag } else { 0 };
-    let film = material.material.film.unwrap_or(ThinFilm { weight: 0.0, ior: 1.0, thickness: 0.0 });
-    GpuMaterial {
-        base_color: material.material.base_color.to_array(),
-        metalness: material.material.metalness,
-        emission: material.emission.to_array(),
-        roughness: material.material.roughness,
-        dielectric_f0: material.material.dielectric_f0.to_array(),
-        dielectric_f90: material.material.dielectric_f90,
-        base_color_texture: texture(material.base_color_texture),
-        metallic_roughness_texture: texture(material.metallic_roughness_texture),
-        normal_texture: texture(material.normal_texture),
-        normal_scale: material.normal_scale,
-        flags: flag(material.double_sided, GpuMaterial::DOUBLE_SIDED)
-            | flag(material.alpha_cutoff.is_some(), GpuMaterial::ALPHA_MASK),
-        alpha_cutoff: material.alpha_cutoff.unwrap_or(0.0),
-        base_alpha: material.base_alpha,
-        emission_texture: texture(material.emission_texture),
-        coat: material.material.coat,
-        coat_roughness: material.material.coat_roughness,
-        coat_texture: texture(material.coat_texture),
-        coat_roughness_texture: texture(material.coat_roughness_texture),
-        coat_normal_texture: texture(material.coat_normal_texture),
-        coat_normal_scale: material.coat_normal_scale,
-        sheen_color_texture: texture(material.sheen_color_texture),
-        sheen_roughness_texture: texture(material.sheen_roughness_texture),
-        sheen_color: material.material.sheen_color.to_array(),
-        sheen_roughness: material.material.sheen_roughness,
-        anisotropy_texture: texture(material.anisotropy_texture),
-        anisotropy_strength: material.anisotropy_strength,
-        anisotropy_direction: [material.anisotropy_rotation.cos(), material.anisotropy_rotation.sin()],
-        film_weight: film.weight as f32,
-        film_ior: film.ior as f32,
-        film_least_thickness: material.film_least_thickness,
-        film_thickness: film.thickness as f32,
-        film_texture: texture(material.film_texture),
-        film_thickness_texture: texture(material.film_thickness_texture),
-        transmission_texture: texture(material.transmission_texture),
-        transmission_color_texture: texture(material.transmission_color_texture),
-        transmission_color: material.material.transmission_color.to_array(),
-        transmission: material.material.transmission,
-        specular_texture: texture(material.specular_texture),
-        specular_color_texture: texture(material.specular_color_texture),
-        reserved: [0; 2],
+impl From<&SceneMaterial> for GpuMaterial {
+    fn from(material: &SceneMaterial) -> Self {
+        let texture = |index: Option<u32>| index.unwrap_or(GpuMaterial::NO_TEXTURE);
+        let flag = |on: bool, flag: u32| if on { flag } else { 0 };
+        let film = material.material.film.unwrap_or(ThinFilm { weight: 0.0, ior: 1.0, thickness: 0.0 });
+        Self {
+            base_color: material.material.base_color.to_array(),
+            metalness: material.material.metalness,
+            emission: material.emission.to_array(),
+            roughness: material.material.roughness,
+            dielectric_f0: material.material.dielectric_f0.to_array(),
+            dielectric_f90: material.material.dielectric_f90,
+            base_color_texture: texture(material.base_color_texture),
+            metallic_roughness_texture: texture(material.metallic_roughness_texture),
+            normal_texture: texture(material.normal_texture),
+            normal_scale: material.normal_scale,
+            flags: flag(material.double_sided, GpuMaterial::DOUBLE_SIDED)
+                | flag(material.alpha_cutoff.is_some(), GpuMaterial::ALPHA_MASK),
+            alpha_cutoff: material.alpha_cutoff.unwrap_or(0.0),
+            base_alpha: material.base_alpha,
+            emission_texture: texture(material.emission_texture),
+            coat: material.material.coat,
+            coat_roughness: material.material.coat_roughness,
+            coat_texture: texture(material.coat_texture),
+            coat_roughness_texture: texture(material.coat_roughness_texture),
+            coat_normal_texture: texture(material.coat_normal_texture),
+            coat_normal_scale: material.coat_normal_scale,
+            sheen_color_texture: texture(material.sheen_color_texture),
+            sheen_roughness_texture: texture(material.sheen_roughness_texture),
+            sheen_color: material.material.sheen_color.to_array(),
+            sheen_roughness: material.material.sheen_roughness,
+            anisotropy_texture: texture(material.anisotropy_texture),
+            anisotropy_strength: material.anisotropy_strength,
+            anisotropy_direction: [material.anisotropy_rotation.cos(), material.anisotropy_rotation.sin()],
+            film_weight: film.weight as f32,
+            film_ior: film.ior as f32,
+            film_least_thickness: material.film_least_thickness,
+            film_thickness: film.thickness as f32,
+            film_texture: texture(material.film_texture),
+            film_thickness_texture: texture(material.film_thickness_texture),
+            transmission_texture: texture(material.transmission_texture),
+            transmission_color_texture: texture(material.transmission_color_texture),
+            transmission_color: material.material.transmission_color.to_array(),
+            transmission: material.material.transmission,
+            specular_texture: texture(material.specular_texture),
+            specular_color_texture: texture(material.specular_color_texture),
+            glass_texture: texture(material.glass_texture),
+            glass: material.material.glass,
+        }
     }
 }
 

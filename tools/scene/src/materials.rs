@@ -2,7 +2,9 @@
 
 use crate::document::Document;
 use crate::error::SceneError;
-use crate::extensions::{ANISOTROPY, CLEARCOAT, DIFFUSE_TRANSMISSION, IRIDESCENCE, OF_MATERIALS, SHEEN};
+use crate::extensions::{
+    ANISOTROPY, CLEARCOAT, DIFFUSE_TRANSMISSION, IRIDESCENCE, OF_MATERIALS, SHEEN, TRANSMISSION,
+};
 use crate::images::{TextureReader, Textures};
 use crate::messages::Messages;
 use crate::scene::SceneMaterial;
@@ -82,6 +84,7 @@ impl SceneMaterial {
             ("film_thickness_texture", self.film_thickness_texture),
             ("transmission_texture", self.transmission_texture),
             ("transmission_color_texture", self.transmission_color_texture),
+            ("glass_texture", self.glass_texture),
         ]
         .into_iter()
         .filter_map(|(field, texture)| Some((field, texture?)))
@@ -113,6 +116,8 @@ fn read_material(
     let transmission = reader.diffuse_transmission(source)?;
     let [transmission_factor] = reader.fractions("diffuseTransmissionFactor", [transmission.factor]);
     let transmission_color = reader.fractions("diffuseTransmissionColorFactor", transmission.color_factor);
+    let pane: Transmission = reader.extension(source, TRANSMISSION)?;
+    let [glass] = reader.fractions("transmissionFactor", [pane.factor]);
     let material = Material {
         base_color: Vec3::new(r, g, b),
         metalness,
@@ -126,6 +131,7 @@ fn read_material(
         film: iridescence.film(),
         transmission: transmission_factor,
         transmission_color: Vec3::from_array(transmission_color),
+        glass,
     };
     let anisotropy = reader.anisotropy(source)?;
     let [anisotropy_strength] = reader.fractions("anisotropyStrength", [anisotropy.strength]);
@@ -148,6 +154,7 @@ fn read_material(
     let film_thickness_texture = reader.texture(iridescence.thickness_texture.as_ref(), false)?;
     let transmission_texture = reader.texture(transmission.texture.as_ref(), false)?;
     let transmission_color_texture = reader.texture(transmission.color_texture.as_ref(), true)?;
+    let glass_texture = reader.texture(pane.texture.as_ref().filter(|_| glass > 0.0), false)?;
     // Transparency
     let alpha_cutoff = match source.alpha_mode {
         Checked::Valid(AlphaMode::Mask) => Some(source.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0)),
@@ -183,6 +190,7 @@ fn read_material(
         film_least_thickness: iridescence.least_thickness,
         transmission_texture,
         transmission_color_texture,
+        glass_texture,
         alpha_cutoff,
         double_sided: source.double_sided,
     })
@@ -433,6 +441,16 @@ struct Clearcoat {
     roughness_texture: Option<json::texture::Info>,
     #[serde(rename = "clearcoatNormalTexture")]
     normal_texture: Option<json::material::NormalTexture>,
+}
+
+/// `KHR_materials_transmission`.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Transmission {
+    #[serde(rename = "transmissionFactor")]
+    factor: f32,
+    #[serde(rename = "transmissionTexture")]
+    texture: Option<json::texture::Info>,
 }
 
 /// `KHR_materials_diffuse_transmission`.

@@ -90,7 +90,7 @@ impl Triangle {
 }
 
 /// A material: factors, and the textures that multiply them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct SceneMaterial {
     /// The file's name for it, or its index.
     pub name: String,
@@ -146,6 +146,8 @@ pub struct SceneMaterial {
     pub transmission_texture: Option<u32>,
     /// Of an sRGB texture times the colour of that.
     pub transmission_color_texture: Option<u32>,
+    /// Of a linear texture: red times how much of it is a pane.
+    pub glass_texture: Option<u32>,
     /// Alpha below which a surface is not there; none for opaque materials.
     pub alpha_cutoff: Option<f32>,
     /// Seen from both sides. Other surfaces are seen from their front only.

@@ -139,7 +139,8 @@ fn a_scenes_material_has_the_same_offsets() {
         transmission,
         specular_texture,
         specular_color_texture,
-        reserved as "reserved0"
+        glass_texture,
+        glass
     );
     assert_offsets(&module(&tool::kernels::VISIBILITY), "ArealightGpuMaterial", &expected);
 }

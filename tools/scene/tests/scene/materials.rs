@@ -105,8 +105,8 @@ fn what_is_out_of_range_or_unknown_is_said() {
         ),
         (json!({ "alphaMode": "BLEND" }), "alphaMode BLEND is not supported: treated as opaque"),
         (
-            json!({ "extensions": { "KHR_materials_transmission": { "transmissionFactor": 1 } } }),
-            "KHR_materials_transmission is not supported: ignored",
+            json!({ "extensions": { "KHR_materials_volume": { "thicknessFactor": 1 } } }),
+            "KHR_materials_volume is not supported: ignored",
         ),
         (
             json!({ "extensions": { "KHR_materials_clearcoat": { "clearcoatFactor": 1.5 } } }),
@@ -481,6 +481,31 @@ fn diffuse_transmission_is_read_with_both_textures() {
     let mut metal = with_transmission(&json!({ "diffuseTransmissionFactor": 1 }));
     metal["pbrMetallicRoughness"]["metallicFactor"] = json!(1);
     assert!(!load(panel_with(metal)).effects().contains(Effects::TRANSMISSION));
+}
+
+#[test]
+fn panes_are_read_with_their_texture() {
+    let with_pane = |values: Value| {
+        json!({ "pbrMetallicRoughness": { "metallicFactor": 0, "baseColorFactor": [0.25, 0.5, 1, 1] },
+                "extensions": { "KHR_materials_transmission": values } })
+    };
+    let scene = load(textured(with_pane(
+        json!({ "transmissionFactor": 0.75, "transmissionTexture": { "index": 0 } }),
+    )));
+    assert_eq!(warnings(&scene), [""; 0]);
+    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
+    assert_eq!((gpu.glass, scene.textures[gpu.glass_texture as usize].srgb), (0.75, false));
+    assert!(scene.effects().contains(Effects::GLASS) && !scene.effects().contains(Effects::TRANSMISSION));
+    // A quarter of the light below the interface is diffused; what Fresnel's term leaves of the rest passes
+    let material = scene.materials[0].material;
+    assert_eq!(material.surface().diffuse_albedo, DVec3::new(0.0625, 0.125, 0.25));
+    let through = material.other_side();
+    assert!((through.f0 - DVec3::new(0.1875, 0.375, 0.75) * 0.96).length() < 1e-7, "{}", through.f0);
+    assert_eq!((through.f90, through.diffuse_albedo), (0.0, DVec3::ZERO));
+    // The twin: nothing of it where the factor is zero
+    let without = load(textured(with_pane(json!({ "transmissionTexture": { "index": 0 } }))));
+    assert_eq!((without.materials[0].glass_texture, without.textures.len()), (None, 0));
+    assert!(!without.effects().contains(Effects::GLASS));
 }
 
 #[test]
