@@ -165,6 +165,7 @@ fn quad_rows() -> Vec<Row> {
             Effects::DIFFUSE | Effects::TRANSMISSION,
             exact,
         ),
+        quads("quads", "exact, glass (a pass of its own)", Effects::GLOSSY | Effects::TRANSMISSION, exact),
     ]
 }
 
