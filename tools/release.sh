@@ -4,6 +4,7 @@
 #   tools/release.sh DIR             arealight-VERSION-SYSTEM.tar.gz      the program, with the viewer, completions, manual pages and scenes
 #                                    arealight-c-VERSION-SYSTEM.tar.gz    the C library, shared and static, with its header and guide
 #                                    arealight-glsl-VERSION.tar.gz        the GLSL library, tables and SPIR-V: what `arealight export` writes
+#                                    arealight-web-VERSION.tar.gz         a page with lamps to drag, for any host of static files
 #                                    arealight-VERSION-*.whl              the Python module
 #                                    SHA256SUMS
 #   tools/release.sh DIR --no-wheel  without the last but one, which takes maturin: pip install maturin
@@ -91,6 +92,12 @@ archive "$name"
 name="arealight-glsl-$version"
 "$program" export "$scratch/$name" >/dev/null
 install -m644 docs/embed-glsl.md CHANGELOG.md LICENSE-APACHE LICENSE-MIT "$scratch/$name"
+archive "$name"
+
+# The page
+name="arealight-web-$version"
+AREALIGHT="$program" tools/test-web.sh folder
+cp -r "${CARGO_TARGET_DIR:-$root/target}/web" "$scratch/$name"
 archive "$name"
 
 # The Python module

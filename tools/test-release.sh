@@ -32,4 +32,7 @@ LD_LIBRARY_PATH="$PWD/${library[0]}/lib" ./version
 # The GLSL library, as a host's compiler takes it
 glsl=(arealight-glsl-*)
 glslangValidator --target-env vulkan1.1 -S comp -I"${glsl[0]}/include" "${glsl[0]}/examples/deferred.comp" -o deferred.spv >/dev/null
+# The page, with what it loads
+web=(arealight-web-*)
+[[ -s "${web[0]}/index.html" && -s "${web[0]}/film.gif" && -s "${web[0]}/export/webgpu/shade.wgsl" ]]
 echo "every archive is what it says: good"

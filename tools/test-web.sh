@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
 # Runs the exported WGSL in a browser, Chromium without a screen, whose WebGPU is SwiftShader's, on the CPU:
 #
-#   tools/test-web.sh            shades the points of examples/web/points.json there, and compares the answers with the oracle's, in float64
+#   tools/test-web.sh            shades the points of examples/web/points.json there, drags a lamp of the page, and compares both with the
+#                                oracle's answers, in float64
 #   tools/test-web.sh picture    draws examples/web into target/web/picture.png
 #   tools/test-web.sh serve      serves the page to a browser of yours, until it is interrupted
+#   tools/test-web.sh folder     puts the page and what it loads into target/web, for any host of static files
 #
 # The program `arealight` is target/debug/arealight, built if need be, or $AREALIGHT.
 set -euo pipefail
 
 mode="${1:-test}"
-if [[ "$mode" != test && "$mode" != picture && "$mode" != serve ]]; then
-    echo "usage: tools/test-web.sh [test|picture|serve]" >&2
+if [[ "$mode" != test && "$mode" != picture && "$mode" != serve && "$mode" != folder ]]; then
+    echo "usage: tools/test-web.sh [test|picture|serve|folder]" >&2
     exit 2
 fi
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
@@ -23,8 +25,10 @@ folder="${CARGO_TARGET_DIR:-$root/target}/web"
 rm -rf "$folder"
 mkdir -p "$folder"
 cp examples/web/* "$folder/"
+cp docs/images/moving-light.gif "$folder/film.gif" # where a browser has no WebGPU
 "$arealight" export "$folder/export" --target webgpu --effects diffuse,glossy >/dev/null
 
+if [[ "$mode" == folder ]]; then exit 0; fi
 if [[ "$mode" == serve ]]; then
     echo "http://127.0.0.1:PORT/index.html, until Ctrl+C; PORT is"
     exec python3 tools/web_server.py "$folder"
@@ -36,7 +40,7 @@ trap 'rm -rf "$scratch"' EXIT
 # Opens the page in the browser, and waits for what it posts. The browser looks for nothing on the network, and its watchdog, which ends
 # a driver that compiles for ten seconds, sleeps.
 flags=(--headless --no-sandbox --no-first-run --disable-background-networking --disable-component-update --disable-sync --disable-quic
-    --disable-gpu-watchdog --enable-unsafe-webgpu --use-webgpu-adapter=swiftshader --enable-features=Vulkan --enable-logging=stderr)
+    --disable-gpu-watchdog --enable-unsafe-webgpu --use-webgpu-adapter=swiftshader --use-vulkan=swiftshader --use-angle=swiftshader --enable-features=Vulkan --enable-logging=stderr)
 open_page_once() { # the part of the address after #, the file that what is posted goes to
     local server browser port=""
     : >"$scratch/port"
@@ -75,23 +79,26 @@ if [[ "$mode" == picture ]]; then
 fi
 
 # Compares a page's answers with the oracle's: the largest relative error of a point. float32 and a table of half floats leave 1e-4 or so
-points="$folder/points.json"
-compare() { # the part of the address after #
+compare() { # the part of the address after #, and a file of points; without one the page posts them
     open_page "$1" "$scratch/$1.json" || return 3
     if ! grep -q '"results"' "$scratch/$1.json"; then
         cat "$scratch/$1.json" >&2
         return 3
     fi
-    "$arealight" eval "$points" --on oracle --specular-lobes one --against "$scratch/$1.json" --tolerance 1e-3
+    "$arealight" eval "${2:-$scratch/$1.json}" --on oracle --specular-lobes one --against "$scratch/$1.json" --tolerance 1e-3
+}
+must_differ() { # as above
+    local status=0
+    compare "$@" || status=$?
+    [[ "$status" -eq 1 ]] || { echo "error: that is not found (exit code $status)" >&2; exit 1; }
 }
 
 echo "With the table as exported:"
-compare test
+compare test "$folder/points.json"
 echo "With its first layer alone, which must differ:"
-status=0
-compare test-first-layer || status=$?
-if [[ "$status" -ne 1 ]]; then
-    echo "error: a table without its other layers is not found (exit code $status)" >&2
-    exit 1
-fi
-echo "ok: WGSL in a browser answers as the oracle does, and a wrong table shows"
+must_differ test-first-layer "$folder/points.json"
+echo "A lamp that a pointer has dragged, in the page's own picture:"
+compare test-drag
+echo "The same as if it had stayed, which must differ:"
+must_differ test-drag-from
+echo "ok: WGSL in a browser answers as the oracle does, also of what is dragged; a wrong table and a wrong place show"

@@ -47,8 +47,8 @@ function writeStruct(layout, view, at, values) {
     }
 }
 
-const subtract = (a, b) => a.map((x, i) => x - b[i]);
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const subtract = (a, b) => a.map((x, i) => x - b[i]);
+export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 export const normalize = (a) => a.map((x) => x / Math.hypot(...a));
 
 const TWO_SIDED = 1, FLAT = 2, QUAD = 8, NO_TEXTURE = 0xffffffff;
@@ -80,72 +80,82 @@ export function packLights(target, lights) {
     return { records, vertices: new Float32Array(vertices), count: lights.length };
 }
 
-// A buffer that holds these bytes.
-function buffer(device, usage, data) {
-    const made = device.createBuffer({ size: data.byteLength, usage: usage | GPUBufferUsage.COPY_DST });
-    device.queue.writeBuffer(made, 0, data.buffer, data.byteOffset, data.byteLength);
-    return made;
-}
-
-// A texture of four 32-bit floats a texel.
-function texture(device, size, texels) {
-    const made = device.createTexture({
-        size,
-        format: "rgba32float",
-        usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
-    });
-    device.queue.writeTexture({ texture: made }, texels, { bytesPerRow: 16 * size[0] }, size);
-    return made;
-}
-
-// Shades a G-buffer (`position`, `normal` and `base_color`, four floats a pixel, in world space) that is seen from `camera`. Returns the
-// radiance, four floats a pixel.
-export async function shade({ device, target, pipeline, table }, gBuffer, size, camera, lights) {
-    const packed = packLights(target, lights);
-    const block = target.structs.ShadeConstants;
-    const constants = new DataView(new ArrayBuffer(block.size));
-    writeStruct(block, constants, 0, { camera, light_count: packed.count, quad_count: packed.count, size });
-
-    // Bind by the manifest's names
-    const radiance = device.createTexture({
-        size,
-        format: "rgba32float",
-        usage: GPUTextureUsage.STORAGE_BINDING | GPUTextureUsage.COPY_SRC,
-    });
-    const resources = {
-        table_image: table.createView({ dimension: "2d-array" }),
-        lights: { buffer: buffer(device, GPUBufferUsage.STORAGE, packed.records) },
-        light_vertices: { buffer: buffer(device, GPUBufferUsage.STORAGE, packed.vertices) },
-        g_position: texture(device, size, gBuffer.position).createView(),
-        g_normal: texture(device, size, gBuffer.normal).createView(),
-        g_base_color: texture(device, size, gBuffer.base_color).createView(),
-        radiance_image: radiance.createView(),
-        constants: { buffer: buffer(device, GPUBufferUsage.UNIFORM, constants) },
-    };
-    const entries = target.bindings.map(({ binding, name }) => {
-        if (!resources[name]) throw new Error(`the kernel wants ${name}: this page shades quads on surfaces of two lobes alone`);
-        return { binding, resource: resources[name] };
-    });
-
-    // Dispatch, and read back
-    const commands = device.createCommandEncoder();
-    const pass = commands.beginComputePass();
-    pass.setPipeline(pipeline);
-    pass.setBindGroup(0, device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries }));
-    pass.dispatchWorkgroups(...size.map((side, axis) => Math.ceil(side / target.workgroup_size[axis])));
-    pass.end();
-    const bytesPerRow = 256 * Math.ceil(size[0] / 16);
-    const readback = device.createBuffer({
-        size: bytesPerRow * size[1],
-        usage: GPUBufferUsage.COPY_DST | GPUBufferUsage.MAP_READ,
-    });
-    commands.copyTextureToBuffer({ texture: radiance }, { buffer: readback, bytesPerRow }, size);
-    device.queue.submit([commands.finish()]);
-    await readback.mapAsync(GPUMapMode.READ);
-    const rows = new Float32Array(readback.getMappedRange());
-    const texels = new Float32Array(4 * size[0] * size[1]);
-    for (let y = 0; y < size[1]; y++) {
-        texels.set(rows.subarray(y * bytesPerRow / 4, y * bytesPerRow / 4 + 4 * size[0]), y * 4 * size[0]);
+// A picture of `size` pixels that is shaded again and again: its G-buffer, up to `capacity` lights, and its radiance.
+export class Frame {
+    constructor({ device, target, pipeline, table }, size, capacity) {
+        Object.assign(this, { device, target, pipeline, size });
+        const { COPY_DST, STORAGE, UNIFORM } = GPUBufferUsage;
+        const buffer = (usage, bytes) => device.createBuffer({ size: bytes, usage: usage | COPY_DST });
+        this.lights = buffer(STORAGE, capacity * target.structs.ArealightGpuLight.size);
+        this.vertices = buffer(STORAGE, capacity * 4 * 16);
+        this.constants = buffer(UNIFORM, target.structs.ShadeConstants.size);
+        const texture = (usage) => device.createTexture({ size, format: "rgba32float", usage });
+        const { TEXTURE_BINDING, COPY_SRC, STORAGE_BINDING } = GPUTextureUsage;
+        for (const name of ["position", "normal", "base_color"]) this[name] = texture(TEXTURE_BINDING | GPUTextureUsage.COPY_DST);
+        this.radiance = texture(STORAGE_BINDING | TEXTURE_BINDING | COPY_SRC);
+        this.set = this.bind({
+            table_image: table.createView({ dimension: "2d-array" }),
+            lights: { buffer: this.lights },
+            light_vertices: { buffer: this.vertices },
+            g_position: this.position.createView(),
+            g_normal: this.normal.createView(),
+            g_base_color: this.base_color.createView(),
+            radiance_image: this.radiance.createView(),
+            constants: { buffer: this.constants },
+        });
     }
-    return texels;
+
+    // By the manifest's names.
+    bind(resources) {
+        const entries = this.target.bindings.map(({ binding, name }) => {
+            if (!resources[name]) throw new Error(`the kernel wants ${name}: this page shades quads on surfaces of two lobes alone`);
+            return { binding, resource: resources[name] };
+        });
+        return this.device.createBindGroup({ layout: this.pipeline.getBindGroupLayout(0), entries });
+    }
+
+    // `position`, `normal` and `base_color`: four floats a pixel, in world space.
+    setSurfaces(gBuffer) {
+        const layout = { bytesPerRow: 16 * this.size[0] };
+        for (const name of ["position", "normal", "base_color"]) {
+            this.device.queue.writeTexture({ texture: this[name] }, gBuffer[name], layout, this.size);
+        }
+    }
+
+    setLights(lights, camera) {
+        const packed = packLights(this.target, lights);
+        const block = this.target.structs.ShadeConstants;
+        const constants = new DataView(new ArrayBuffer(block.size));
+        writeStruct(block, constants, 0, { camera, light_count: packed.count, quad_count: packed.count, size: this.size });
+        this.device.queue.writeBuffer(this.lights, 0, packed.records);
+        this.device.queue.writeBuffer(this.vertices, 0, packed.vertices);
+        this.device.queue.writeBuffer(this.constants, 0, constants);
+    }
+
+    dispatch(commands) {
+        const pass = commands.beginComputePass();
+        pass.setPipeline(this.pipeline);
+        pass.setBindGroup(0, this.set);
+        pass.dispatchWorkgroups(...this.size.map((side, axis) => Math.ceil(side / this.target.workgroup_size[axis])));
+        pass.end();
+    }
+
+    // Shades, and returns the radiance, four floats a pixel.
+    async read() {
+        const commands = this.device.createCommandEncoder();
+        this.dispatch(commands);
+        const bytesPerRow = 256 * Math.ceil(this.size[0] / 16);
+        const usage = GPUBufferUsage.COPY_DST | GPUBufferUsage.MAP_READ;
+        const readback = this.device.createBuffer({ size: bytesPerRow * this.size[1], usage });
+        commands.copyTextureToBuffer({ texture: this.radiance }, { buffer: readback, bytesPerRow }, this.size);
+        this.device.queue.submit([commands.finish()]);
+        await readback.mapAsync(GPUMapMode.READ);
+        const rows = new Float32Array(readback.getMappedRange());
+        const [width, height] = this.size;
+        const texels = new Float32Array(4 * width * height);
+        for (let y = 0; y < height; y++) {
+            texels.set(rows.subarray(y * bytesPerRow / 4, y * bytesPerRow / 4 + 4 * width), y * 4 * width);
+        }
+        return texels;
+    }
 }
