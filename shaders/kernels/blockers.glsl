@@ -7,7 +7,15 @@
 
 #define BVH_NODES_BINDING BLOCKER_NODES_BINDING
 #include "bvh.glsl"
+// 1: the host's own shader says what is there of triangles that are cut out; else all of them is.
+#ifndef AREALIGHT_HOST_ALPHA
+#define AREALIGHT_HOST_ALPHA 0
+#endif
+#if AREALIGHT_HOST_ALPHA
+#include "blocker_alpha.glsl"
+#endif
 
+// In w of the first vertex are the bits of the number that arealight_bridge_alpha is asked by; 0 for none.
 struct ArealightGpuBlockerTriangle {
     vec4 vertices[3];
 };
@@ -22,6 +30,12 @@ void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit
     if (bvh_intersect(triangle.vertices[0].xyz, triangle.vertices[1].xyz, triangle.vertices[2].xyz, index,
                       origin, direction,
                       hit.distance, met)) {
+#if AREALIGHT_HOST_ALPHA
+        uint number = floatBitsToUint(triangle.vertices[0].w);
+        if (number != 0u && !blocker_hides(0u, number, met.barycentric, direction)) {
+            return;
+        }
+#endif
         hit = met;
     }
 }

@@ -118,12 +118,12 @@ pub fn shade_with_visibility() -> Vec<u32> {
     with_bridge("shade", "AREALIGHT_HOST_VISIBILITY")
 }
 
-/// The kernel of shadow rays with the example's blocker, likewise.
+/// The kernel of shadow rays with the example's blocker, or with what is there of ours, likewise.
 ///
 /// # Panics
 /// As [`shade_with_bridge`].
-pub fn shadow_rays_with_bridge() -> Vec<u32> {
-    with_bridge("shadow_rays", "AREALIGHT_HOST_BLOCKER")
+pub fn shadow_rays_with_bridge(macro_name: &str) -> Vec<u32> {
+    with_bridge("shadow_rays", macro_name)
 }
 
 /// A kernel with what a macro asks for of the examples.

@@ -27,7 +27,7 @@ pub struct ShadowPatch {
     pub view: Vec3,
     /// What shines.
     pub lights: Vec<Light>,
-    /// Triangles.
+    /// Triangles, whose numbers are 1, 2 and so on.
     pub blockers: Vec<[Vec3; 3]>,
 }
 
@@ -55,7 +55,7 @@ pub struct PatchPasses<'a> {
     shade: ShadePass,
     shadow: ShadowPass,
     options: ShadeOptions,
-    /// Set 1 of a module of the host's that says what blocks.
+    /// Set 1 of a module of the host's that says what blocks, or what is there of it.
     pub blocker_set: Option<vk::DescriptorSet>,
     /// Set 1 of one that says what part of a light arrives.
     pub visibility_set: Option<vk::DescriptorSet>,
@@ -142,7 +142,7 @@ impl ShadowPatch {
         let PatchPasses { engine, shade, shadow: shadows, options, blocker_set, visibility_set } = passes;
         let host = engine.host();
         let packed = PackedLights::new(&self.lights, DVec3::ZERO).unwrap();
-        let blockers = Blockers::new(&self.blockers).unwrap();
+        let blockers = Blockers::new(&self.blockers).unwrap().with_alpha(|index| index + 1);
         let images = Planes::from_fn(|plane| match plane {
             Plane::Position => filled(engine, [0.0, 0.0, 0.0, 1.0]),
             _ => filled(engine, texel_of(&self.material, Vec3::Z, plane)),
@@ -193,9 +193,7 @@ impl ShadowPatch {
                 shadow: of(&shadow),
                 radiance: Some(of(&shadowed)),
                 history: None,
-                blockers: blocker_set
-                    .is_none()
-                    .then(|| BlockerResources { nodes: buffer(&nodes), triangles: buffer(&triangles) }),
+                blockers: Some(BlockerResources { nodes: buffer(&nodes), triangles: buffer(&triangles) }),
             };
             shadows.write_set(sets[1], &resources, &of_shadows).unwrap();
             let frame = ShadeFrame {

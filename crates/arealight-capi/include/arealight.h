@@ -988,11 +988,15 @@ enum ArealightResult arealight_pass_prepare(const struct ArealightPass *pass,
 enum ArealightResult arealight_pass_destroy(struct ArealightPass *pass);
 
 // Builds the hierarchy of triangles: nine numbers each, relative to the origin that lights are packed with,
-// in any vertex order. It takes a microsecond or two a triangle. `*out` is the host's to destroy.
+// in any vertex order. It takes a microsecond or two a triangle. `alphas`, or null, holds of each triangle
+// the number by which shadow rays ask the host what is there of it (arealight_bridge_alpha of a module
+// compiled with AREALIGHT_HOST_ALPHA); 0: all of it, as without such a module. `*out` is the host's to
+// destroy.
 //
 // The host sees to it:
 // Pointers are null or valid, with as many items as the count says.
 enum ArealightResult arealight_blockers_create(const float *vertices,
+                                               const uint32_t *alphas,
                                                uint32_t triangle_count,
                                                struct ArealightBlockers **out);
 

@@ -26,25 +26,32 @@ pub struct ArealightBlockers {
 }
 
 /// Builds the hierarchy of triangles: nine numbers each, relative to the origin that lights are packed with,
-/// in any vertex order. It takes a microsecond or two a triangle. `*out` is the host's to destroy.
+/// in any vertex order. It takes a microsecond or two a triangle. `alphas`, or null, holds of each triangle
+/// the number by which shadow rays ask the host what is there of it (arealight_bridge_alpha of a module
+/// compiled with AREALIGHT_HOST_ALPHA); 0: all of it, as without such a module. `*out` is the host's to
+/// destroy.
 ///
 /// # Safety
 /// Pointers are null or valid, with as many items as the count says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn arealight_blockers_create(
     vertices: *const f32,
+    alphas: *const u32,
     triangle_count: u32,
     out: *mut *mut ArealightBlockers,
 ) -> ArealightResult {
     call(|| {
         // SAFETY: the caller vouches for the pointers, here and below.
-        let numbers = unsafe {
+        let count = triangle_count as usize;
+        let (numbers, alphas) = unsafe {
             arguments::write(out, std::ptr::null_mut(), "out")?;
-            arguments::array(vertices, 9 * triangle_count as usize, "vertices")?
+            let alphas = if alphas.is_null() { &[] } else { arguments::array(alphas, count, "alphas")? };
+            (arguments::array(vertices, 9 * count, "vertices")?, alphas)
         };
         let triangle = |numbers: &[f32]| [0, 3, 6].map(|first| Vec3::from_slice(&numbers[first..]));
         let triangles: Vec<[Vec3; 3]> = numbers.chunks_exact(9).map(triangle).collect();
-        let blockers = Blockers::new(&triangles).map_err(refused)?;
+        let number = |index: u32| alphas.get(index as usize).copied().unwrap_or_default();
+        let blockers = Blockers::new(&triangles).map_err(refused)?.with_alpha(number);
         // SAFETY: as above.
         unsafe { arguments::write(out, handles::give(ArealightBlockers { blockers }), "out") }
     })
@@ -401,12 +408,12 @@ mod tests {
         unsafe {
             let wrong = [f32::NAN; 9];
             assert_eq!(
-                arealight_blockers_create(wrong.as_ptr(), 1, &raw mut blockers),
+                arealight_blockers_create(wrong.as_ptr(), std::ptr::null(), 1, &raw mut blockers),
                 ArealightResult::ErrorArgument
             );
             assert!(blockers.is_null());
             assert_eq!(
-                arealight_blockers_create(vertices.as_ptr(), 1, &raw mut blockers),
+                arealight_blockers_create(vertices.as_ptr(), std::ptr::null(), 1, &raw mut blockers),
                 ArealightResult::Ok
             );
             assert_eq!(arealight_blockers_read(blockers, &raw mut sizes), ArealightResult::Ok);

@@ -14,8 +14,9 @@ use std::ops::Range;
 pub struct Blockers {
     /// Never empty: without triangles it is one node of zeros, which a traversal passes by.
     pub nodes: Vec<GpuBvhNode>,
-    /// In the order of the leaves, relative to the origin that the vertices were given in; w is zero. Empty
-    /// without triangles; a descriptor wants a buffer all the same, of any content.
+    /// In the order of the leaves, relative to the origin that the vertices were given in; w is zero, but of
+    /// first vertices the bits of a number ([`Blockers::with_alpha`]). Empty without triangles; a descriptor
+    /// wants a buffer all the same, of any content.
     pub triangles: Vec<[[f32; 4]; 3]>,
     /// For each of them its index in the list that was given.
     pub order: Vec<u32>,
@@ -70,6 +71,17 @@ impl Blockers {
     pub fn new(triangles: &[[Vec3; 3]]) -> Result<Self, BlockerError> {
         check(triangles)?;
         Ok(Self::no_deeper_than(MAX_DEPTH, triangles))
+    }
+
+    /// Gives triangles that are cut out or thin as a veil, by index in the list that was given, the number by
+    /// which shadow rays ask the host what is there of them where they meet them. 0: all of it. A pass whose
+    /// module has no such function of the host's (`AREALIGHT_HOST_ALPHA`) takes all of it to be there.
+    #[must_use]
+    pub fn with_alpha(mut self, number: impl Fn(u32) -> u32) -> Self {
+        for (triangle, &index) in self.triangles.iter_mut().zip(&self.order) {
+            triangle[0][3] = f32::from_bits(number(index));
+        }
+        self
     }
 
     fn no_deeper_than(limit: u32, triangles: &[[Vec3; 3]]) -> Self {
@@ -367,6 +379,16 @@ mod tests {
         built(&vec![[Vec3::ONE, Vec3::splat(2.0)]; 50_000]);
         built(&vec![[Vec3::splat(3.0); 2]; 100]);
         built(&[[Vec3::splat(-1e16), Vec3::splat(1e16)], [Vec3::ZERO; 2], [Vec3::X, Vec3::X * 1e15]]);
+    }
+
+    #[test]
+    fn triangles_that_are_cut_out_have_their_numbers() {
+        let boxes: Vec<Box3> = (0..40).map(|i| [Vec3::X * (i * 7 % 40) as f32, Vec3::ONE]).collect();
+        let number = |index: u32| if index.is_multiple_of(3) { u32::MAX - index } else { 0 };
+        let cut = built(&boxes).with_alpha(number);
+        let found = cut.triangles.iter().map(|[first, ..]| first[3].to_bits());
+        assert!(found.eq(cut.order.iter().map(|index| number(*index))) && cut.order != [0; 40]);
+        assert_eq!(cut.triangles.iter().flatten().filter(|vertex| vertex[3].to_bits() != 0).count(), 14);
     }
 
     #[test]

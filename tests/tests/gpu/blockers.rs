@@ -218,15 +218,22 @@ fn a_scene_blocks_but_by_its_lamps_and_where_it_is_masked_out() {
         assert_eq!(hit(&scene, ray), f64::from(expected as f32), "{distance}");
     }
     // A mask whose left texel is transparent
-    let masked = |cutoff| {
+    let masked = |cutoff, blended| {
         let mut scene = scene.clone();
         scene.triangles[1].uvs = [Vec2::ZERO, Vec2::X * 4.0, Vec2::ZERO];
         scene.materials[0].base_color_texture = Some(0);
         scene.materials[0].alpha_cutoff = cutoff;
+        scene.materials[0].blended = blended;
         scene
     };
-    for (x, cutoff, expected) in [(0.2, Some(0.5), 10.0), (0.8, Some(0.5), 2.0), (0.2, None, 2.0)] {
+    for (x, cutoff, blended, expected) in [
+        (0.2, Some(0.5), false, 10.0),
+        (0.8, Some(0.5), false, 2.0),
+        (0.2, None, false, 2.0),
+        (0.2, None, true, 10.0),
+        (0.8, None, true, 2.0),
+    ] {
         let ray = Ray::new(DVec3::new(x, 1.0, 0.0), DVec3::Z, 10.0);
-        assert_eq!(hit(&masked(cutoff), ray), expected, "{x} {cutoff:?}");
+        assert_eq!(hit(&masked(cutoff, blended), ray), expected, "{x} {cutoff:?} {blended}");
     }
 }

@@ -1,7 +1,7 @@
 //! Shadows of a host in C are the recorder's, to the last bit.
 
-use arealight::Plane;
 use arealight::plan::{ShadeOptions, ShadowFilter};
+use arealight::{Blockers, Plane};
 use arealight_capi::{
     AREALIGHT_SHADOW_FILTER_GATHER, AREALIGHT_WHOLE_SIZE, ArealightBlockerArrays, ArealightBuffer,
     ArealightFrame, ArealightImage, ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult,
@@ -24,7 +24,7 @@ use arealight_vk::ShadowPass;
 use ash::vk::{self, Handle as _};
 use glam::{Vec3, Vec4};
 use std::ffi::c_void;
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 
 /// A wall before one half of the lamp.
 fn patch() -> ShadowPatch {
@@ -41,14 +41,15 @@ fn patch() -> ShadowPatch {
 }
 
 /// The hierarchy's nodes and triangles, as a host in C gets them.
-fn blocker_arrays(triangles: &[[Vec3; 3]]) -> [Vec<u32>; 2] {
+fn blocker_arrays(triangles: &[[Vec3; 3]], alphas: Option<&[u32]>) -> [Vec<u32>; 2] {
     let mut blockers = null_mut();
     let mut arrays =
         ArealightBlockerArrays { nodes: null_mut(), triangles: null_mut(), nodes_size: 0, triangles_size: 0 };
     // SAFETY: the pointers are valid, and the arrays as large as they say.
     unsafe {
         let (vertices, count) = (triangles.as_ptr().cast(), triangles.len() as u32);
-        good(arealight_blockers_create(vertices, count, &raw mut blockers));
+        let alphas = alphas.map_or(null(), <[u32]>::as_ptr);
+        good(arealight_blockers_create(vertices, alphas, count, &raw mut blockers));
         good(arealight_blockers_read(blockers, &raw mut arrays));
         let mut made = [arrays.nodes_size, arrays.triangles_size].map(|size| vec![0_u32; size as usize / 4]);
         [arrays.nodes, arrays.triangles] = made.each_mut().map(|array| array.as_mut_ptr().cast());
@@ -119,7 +120,7 @@ impl<'a> CPasses<'a> {
         pack(&mut packed);
         let upload = |array: &Vec<u32>| host.storage_buffer("of C", array).unwrap();
         let [lights, vertices] = arrays.each_ref().map(upload);
-        let [nodes, triangles] = blocker_arrays(&patch.blockers).each_ref().map(upload);
+        let [nodes, triangles] = blocker_arrays(&patch.blockers, None).each_ref().map(upload);
         let mut picks_size = 0;
         // SAFETY: the pointers are valid.
         good(unsafe { arealight_pass_shadow_picks_size(self.shade, SIDE, SIDE, &raw mut picks_size) });
@@ -196,7 +197,7 @@ impl<'a> CPasses<'a> {
                     arealight_shadow_pass_record(self.shadow, commands, shadow_set, resources, frame)
                 };
                 let commands = commands.as_raw() as *mut c_void;
-                let no_frame = ArealightShadowFrame { frame: std::ptr::null(), ..shadow_frame };
+                let no_frame = ArealightShadowFrame { frame: null(), ..shadow_frame };
                 let refusal = record(commands, &raw const no_frame);
                 refused(refusal, ArealightResult::ErrorArgument, "frame.frame: is null");
                 good(record(commands, &raw const shadow_frame));
@@ -242,4 +243,17 @@ fn c_draws_the_shadows_that_rust_does_to_the_last_bit() {
     let free = passes.run(&ShadowPatch { blockers: vec![[Vec3::ZERO; 3]], ..patch.clone() }, 0);
     let lit: Vec<Vec3> = free.iter().map(|texel| texel.truncate()).collect();
     assert_eq!(lit, rust.unshadowed);
+}
+
+#[test]
+fn triangles_that_are_cut_out_have_the_numbers_of_a_host_in_c() {
+    let triangles = patch().blockers;
+    let plain = Blockers::new(&triangles).unwrap();
+    let cut = plain.clone().with_alpha(|index| [0, 7][index as usize]);
+    for (alphas, expected) in [(None, plain), (Some(&[0, 7][..]), cut.clone())] {
+        let [_, found] = blocker_arrays(&triangles, alphas);
+        assert_eq!(found, bytemuck::cast_slice::<_, u32>(&expected.triangles));
+        // The twin: only one of them has a number
+        assert_eq!(found == bytemuck::cast_slice::<_, u32>(&cut.triangles), alphas.is_some());
+    }
 }

@@ -103,8 +103,11 @@ fn flags_have_the_same_bits_in_glsl() {
     assert_constants(LIGHT_RECORDS_GLSL, "LIGHT_", &flags);
     assert_constants(LIGHT_RECORDS_GLSL, "NO_LIGHT_", &[("TEXTURE", GpuLight::NO_TEXTURE.into())]);
     assert_constants(FOOTPRINT_GLSL, "AREALIGHT_NO_", &[("IMAGE", GpuLight::NO_TEXTURE.into())]);
-    let material =
-        [("DOUBLE_SIDED", GpuMaterial::DOUBLE_SIDED.into()), ("ALPHA_MASK", GpuMaterial::ALPHA_MASK.into())];
+    let material = [
+        ("DOUBLE_SIDED", GpuMaterial::DOUBLE_SIDED.into()),
+        ("ALPHA_MASK", GpuMaterial::ALPHA_MASK.into()),
+        ("ALPHA_BLEND", GpuMaterial::ALPHA_BLEND.into()),
+    ];
     let triangle = [
         ("LAMP", GpuTriangle::LAMP.into()),
         ("TANGENTS", GpuTriangle::TANGENTS.into()),

@@ -2,51 +2,14 @@
 //! blocks a ray, and reads a set of theirs.
 
 use crate::shadows::{flat, options, surfaces, symmetric_lights};
-use arealight::plan::ShadeOptions;
-use arealight_engine::host::{DescriptorPool, ImageDescription, Usage};
+use arealight::plan::{ShadeOptions, ShadowFilter};
+use arealight_engine::host::{ImageDescription, Usage};
 use arealight_tests::TestEngine;
 use arealight_tests::kernel::{shade_with_visibility, shadow_rays_with_bridge};
 use arealight_tests::shadow_patch::{PatchPasses, SIDE, ShadowPatch};
+use arealight_vk::Resource;
 use ash::vk;
-
-/// A descriptor set of a host with one binding.
-struct HostSet<'a> {
-    engine: &'a TestEngine,
-    layout: vk::DescriptorSetLayout,
-    set: vk::DescriptorSet,
-    _pool: DescriptorPool,
-}
-
-impl<'a> HostSet<'a> {
-    fn new(
-        engine: &'a TestEngine,
-        kind: vk::DescriptorType,
-        write: impl FnOnce(vk::WriteDescriptorSet<'_>),
-    ) -> Self {
-        let host = engine.host();
-        let binding = [vk::DescriptorSetLayoutBinding::default()
-            .descriptor_type(kind)
-            .descriptor_count(1)
-            .stage_flags(vk::ShaderStageFlags::COMPUTE)];
-        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&binding);
-        let pool =
-            host.descriptor_pool(1, &[vk::DescriptorPoolSize { ty: kind, descriptor_count: 1 }]).unwrap();
-        // SAFETY: The device is alive; what is made is dropped after the last submission was waited for.
-        unsafe {
-            let layout = host.device().create_descriptor_set_layout(&info, None).unwrap();
-            let set = pool.allocate(layout).unwrap();
-            write(vk::WriteDescriptorSet::default().dst_set(set).descriptor_type(kind));
-            Self { engine, layout, set, _pool: pool }
-        }
-    }
-}
-
-impl Drop for HostSet<'_> {
-    fn drop(&mut self) {
-        // SAFETY: Nothing that uses it is pending.
-        unsafe { self.engine.host().device().destroy_descriptor_set_layout(self.layout, None) };
-    }
-}
+use glam::Vec3;
 
 #[test]
 fn a_host_says_itself_what_blocks() {
@@ -54,12 +17,10 @@ fn a_host_says_itself_what_blocks() {
     let host = engine.host();
     let half = [[-100.0_f32, 0.0, 0.01, 0.0], [100.0, 100.0, 0.0, 0.0]];
     let rectangle = host.storage_buffer("rectangle", &half).unwrap();
-    let own = HostSet::new(&engine, vk::DescriptorType::STORAGE_BUFFER, |write| {
-        let buffer = [vk::DescriptorBufferInfo::default().buffer(rectangle.handle()).range(vk::WHOLE_SIZE)];
-        // SAFETY: The set is new, and the buffer outlives it.
-        unsafe { host.device().update_descriptor_sets(&[write.buffer_info(&buffer)], &[]) };
-    });
-    let mut passes = PatchPasses::with_blocker(&engine, options(), shadow_rays_with_bridge(), own.layout);
+    // SAFETY: The buffer outlives the set.
+    let own = unsafe { host.own_set(0, &[Resource::buffer(rectangle.handle())]) }.unwrap();
+    let module = shadow_rays_with_bridge("AREALIGHT_HOST_BLOCKER");
+    let mut passes = PatchPasses::with_blocker(&engine, options(), module, own.layout);
     passes.blocker_set = Some(own.set);
     let (_, material, view) = surfaces().remove(0);
     let (_, light) = symmetric_lights().remove(0);
@@ -69,6 +30,32 @@ fn a_host_says_itself_what_blocks() {
     // The twin: its rectangle elsewhere
     rectangle.upload(&[[0.0_f32, 0.0, -1.0, 0.0], [0.0; 4]]).unwrap();
     assert!((patch.run(&passes).mean() - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_host_says_what_is_there_of_triangles_that_are_cut_out() {
+    let Some(engine) = TestEngine::new() else { return };
+    let host = engine.host();
+    // A plate over everything, there where its coordinate is below a half, which is where y is positive
+    let [a, b, c, d] = [(-100.0, -100.0), (100.0, -100.0), (100.0, 100.0), (-100.0, 100.0)]
+        .map(|(x, y)| Vec3::new(x, y, 0.01));
+    let coordinates = |triangle: [Vec3; 3]| triangle.map(|vertex| [0.5 - vertex.y / 400.0, 0.0]);
+    let blockers = vec![[a, b, c], [a, c, d]];
+    let half: Vec<[[f32; 2]; 3]> = blockers.iter().copied().map(coordinates).collect();
+    let alpha = host.storage_buffer("coordinates", &half).unwrap();
+    // SAFETY: The buffer outlives the set.
+    let own = unsafe { host.own_set(1, &[Resource::buffer(alpha.handle())]) }.unwrap();
+    let module = shadow_rays_with_bridge("AREALIGHT_HOST_ALPHA");
+    let mut passes = PatchPasses::with_blocker(&engine, options(), module, own.layout);
+    passes.blocker_set = Some(own.set);
+    let (_, material, view) = surfaces().remove(0);
+    let (_, light) = symmetric_lights().remove(0);
+    let patch = ShadowPatch { material, view, lights: vec![light], blockers };
+    let found = patch.run(&passes).mean();
+    assert!((found - 0.5).abs() < 4e-3, "{found}");
+    // The twin: a pass that asks nobody
+    let plain = PatchPasses::new(&engine, options(), ShadowFilter::Off);
+    assert_eq!(patch.run(&plain).mean(), 0.0);
 }
 
 #[test]
@@ -89,13 +76,10 @@ fn a_host_multiplies_each_light_with_what_its_shadow_maps_say() {
     let first = (0..SIDE * SIDE).map(|pixel| if pixel % SIDE < SIDE / 2 { 0.25_f32 } else { 1.0 });
     let second = (0..SIDE * SIDE).map(|_| 0.5_f32);
     masks.upload(&first.chain(second).collect::<Vec<_>>(), Usage::COMPUTE_READ).unwrap();
-    let own = HostSet::new(&engine, vk::DescriptorType::SAMPLED_IMAGE, |write| {
-        let image = [vk::DescriptorImageInfo::default()
-            .image_view(masks.array_view())
-            .image_layout(Usage::COMPUTE_READ.layout)];
-        // SAFETY: The set is new, and the image outlives it.
-        unsafe { host.device().update_descriptor_sets(&[write.image_info(&image)], &[]) };
-    });
+    let layout = Usage::COMPUTE_READ.layout;
+    // SAFETY: The image outlives the set.
+    let own = unsafe { host.own_set(0, &[Resource::SampledImage { view: masks.array_view(), layout }]) };
+    let own = own.unwrap();
     let options = ShadeOptions { shadow_rays: 1, ..options() };
     let lights = [
         flat(1.5, &[[0.2, -0.6], [0.2, 0.6], [1.5, 0.6], [1.5, -0.6]]),
@@ -103,7 +87,7 @@ fn a_host_multiplies_each_light_with_what_its_shadow_maps_say() {
     ];
     for (surface, material, view) in surfaces() {
         let patch = ShadowPatch { material, view, lights: lights.to_vec(), blockers: Vec::new() };
-        let plain = PatchPasses::new(&engine, options, arealight::plan::ShadowFilter::Off);
+        let plain = PatchPasses::new(&engine, options, ShadowFilter::Off);
         let alone = lights
             .clone()
             .map(|light| ShadowPatch { lights: vec![light], ..patch.clone() }.run(&plain).unshadowed[0]);

@@ -33,6 +33,7 @@ mod light_textures;
 mod lobe_horizons;
 mod manifest;
 mod many_lights;
+mod masked_shadows;
 mod material_frames;
 mod meshes;
 mod modules;

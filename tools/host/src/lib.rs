@@ -31,7 +31,7 @@ mod swapchain;
 pub mod testing;
 mod validation;
 
-pub use descriptors::DescriptorPool;
+pub use descriptors::{DescriptorPool, OwnSet};
 pub use device::{Host, HostOptions};
 pub use error::HostError;
 pub use frames::{FRAMES_IN_FLIGHT, Frames, Semaphores};

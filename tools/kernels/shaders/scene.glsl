@@ -2,9 +2,14 @@
 #define SCENE_GLSL
 
 // Triangles, materials and textures of a scene: tools/kernels/src/gpu.rs has the same structures, and a
-// test compares the offsets. The including kernel defines SCENE_BINDING, the first of five.
-
+// test compares the offsets. The including kernel defines SCENE_BINDING, the first of five, and SCENE_SET
+// where that is not 0; the first of them is the hierarchy's, if it has none of its own.
+#ifndef SCENE_SET
+#define SCENE_SET 0
+#endif
+#ifndef BVH_NODES_BINDING
 #define BVH_NODES_BINDING SCENE_BINDING
+#endif
 #include "arealight/lobes/sheen.glsl"
 #include "arealight/thin_film.glsl"
 #include "bvh.glsl"
@@ -92,22 +97,23 @@ const uint TRIANGLE_MIRRORED = 4u;
 const uint TRIANGLE_COLORS = 8u;
 const uint MATERIAL_DOUBLE_SIDED = 1u;
 const uint MATERIAL_ALPHA_MASK = 2u;
+const uint MATERIAL_ALPHA_BLEND = 4u;
 const uint TEXTURE_SRGB = 1u;
 const uint TEXTURE_CLAMP_U = 2u;
 const uint TEXTURE_CLAMP_V = 4u;
 const uint TEXTURE_MIRROR_U = 8u;
 const uint TEXTURE_MIRROR_V = 16u;
 
-layout(set = 0, binding = SCENE_BINDING + 1, std430) readonly buffer Triangles {
+layout(set = SCENE_SET, binding = SCENE_BINDING + 1, std430) readonly buffer Triangles {
     ArealightGpuTriangle triangles[];
 };
-layout(set = 0, binding = SCENE_BINDING + 2, std430) readonly buffer Materials {
+layout(set = SCENE_SET, binding = SCENE_BINDING + 2, std430) readonly buffer Materials {
     ArealightGpuMaterial materials[];
 };
-layout(set = 0, binding = SCENE_BINDING + 3, std430) readonly buffer Textures {
+layout(set = SCENE_SET, binding = SCENE_BINDING + 3, std430) readonly buffer Textures {
     ArealightGpuTexture textures[];
 };
-layout(set = 0, binding = SCENE_BINDING + 4, std430) readonly buffer Texels {
+layout(set = SCENE_SET, binding = SCENE_BINDING + 4, std430) readonly buffer Texels {
     uint texels[];
 };
 
@@ -190,14 +196,15 @@ vec4 vertex_color(ArealightGpuTriangle triangle, vec2 barycentric) {
         * barycentric.y;
 }
 
-bool masked_out(BvhHit hit) {
-    ArealightGpuTriangle triangle = triangles[hit.triangle];
+// What part of a triangle is there at a place: all, or by the material's alpha, of a mask all or nothing.
+float surface_alpha(ArealightGpuTriangle triangle, vec2 barycentric) {
     ArealightGpuMaterial material = materials[triangle.material];
-    if ((material.flags & MATERIAL_ALPHA_MASK) == 0u) {
-        return false;
+    if ((material.flags & (MATERIAL_ALPHA_MASK | MATERIAL_ALPHA_BLEND)) == 0u) {
+        return 1.0;
     }
-    float alpha = sample_texture(material.base_color_texture, hit_uv(triangle, hit.barycentric)).a;
-    return alpha * material.base_alpha * vertex_color(triangle, hit.barycentric).a < material.alpha_cutoff;
+    float alpha = sample_texture(material.base_color_texture, hit_uv(triangle, barycentric)).a
+        * material.base_alpha * vertex_color(triangle, barycentric).a;
+    return (material.flags & MATERIAL_ALPHA_BLEND) != 0u ? alpha : alpha < material.alpha_cutoff ? 0.0 : 1.0;
 }
 
 // A tangent-space normal's axes at a hit; both zero where the triangle has no tangents.

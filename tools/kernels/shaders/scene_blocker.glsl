@@ -5,15 +5,16 @@
 // defines SCENE_BINDING, as scene.glsl has it.
 
 #include "scene.glsl"
+#include "arealight/shadows/coverage.glsl"
 #include "arealight/shadows/ray_origin.glsl"
 
-// Both faces of a triangle block, as far as its alpha mask lets it be seen; lamps do not.
+// Both faces of a triangle block, by its alpha; lamps do not.
 void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit) {
     ArealightGpuTriangle triangle = triangles[index];
     BvhHit met;
     if ((triangle.flags & TRIANGLE_LAMP) == 0u
         && bvh_intersect(triangle.p0, triangle.p1, triangle.p2, index, origin, direction, hit.distance, met)
-        && !masked_out(met)) {
+        && arealight_hides(surface_alpha(triangle, met.barycentric), direction, index + 1u)) {
         hit = met;
     }
 }

@@ -32,13 +32,13 @@ layout(push_constant, std430) uniform VisibilityConstants {
     uint reserved4;
 } constants;
 
-// Back faces are met only where the material has two sides.
+// Back faces are met only where the material has two sides, and nothing less than half of which is there.
 void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit) {
     ArealightGpuTriangle triangle = triangles[index];
     bool double_sided = (materials[triangle.material].flags & MATERIAL_DOUBLE_SIDED) != 0u;
     BvhHit met;
     if (bvh_intersect(triangle.p0, triangle.p1, triangle.p2, index, origin, direction, hit.distance, met)
-        && (double_sided || !met.back) && !masked_out(met)) {
+        && (double_sided || !met.back) && surface_alpha(triangle, met.barycentric) >= 0.5) {
         hit = met;
     }
 }

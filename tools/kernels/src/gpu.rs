@@ -302,6 +302,13 @@ impl GpuMaterial {
     pub const DOUBLE_SIDED: u32 = 1;
     /// Transparent where the base colour's alpha is below the cutoff.
     pub const ALPHA_MASK: u32 = 2;
+    /// There by the part that is the base colour's alpha.
+    pub const ALPHA_BLEND: u32 = 4;
+
+    /// Whether all of a surface is there, whatever its alpha.
+    pub fn is_whole(&self) -> bool {
+        self.flags & (Self::ALPHA_MASK | Self::ALPHA_BLEND) == 0
+    }
 }
 
 /// A texture of the visibility kernel: a range of the texel buffer, one RGBA8 texel a `u32`, red in the low

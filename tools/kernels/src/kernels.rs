@@ -28,5 +28,11 @@ pub static REFERENCE: Kernel = Kernel::new("reference", include_bytes!("../spirv
 /// [`crate::gpu::VisibilityConstants`].
 pub static VISIBILITY: Kernel = Kernel::new("visibility", include_bytes!("../spirv/visibility.spv"));
 
-/// Every kernel of this crate.
+/// [`arealight::kernels::SHADOW_RAYS`] of scenes with triangles that are cut out or blended: those with a
+/// number ([`arealight::Blockers::with_alpha`]) are asked for in set 1, whose bindings 1 to 4 are the scene's
+/// triangles, materials, textures and texels. The number is one more than the triangle's index.
+pub static SHADOW_RAYS_MASKED: Kernel =
+    Kernel::new("shadow_rays", include_bytes!("../spirv/shadow_rays_masked.spv"));
+
+/// Every kernel of this crate that is bound by itself.
 pub static ALL: [&Kernel; 4] = [&EVAL, &EVAL_SHAPES, &REFERENCE, &VISIBILITY];

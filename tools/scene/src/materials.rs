@@ -159,7 +159,7 @@ fn read_material(
     let alpha_cutoff = match source.alpha_mode {
         Checked::Valid(AlphaMode::Mask) => Some(source.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0)),
         Checked::Valid(AlphaMode::Blend) => {
-            reader.warn("alphaMode BLEND is not supported: treated as opaque");
+            reader.warn("alphaMode BLEND: seen whole where alpha is 0.5 or more; its shadow is blended");
             None
         }
         _ => None,
@@ -192,6 +192,7 @@ fn read_material(
         transmission_color_texture,
         glass_texture,
         alpha_cutoff,
+        blended: matches!(source.alpha_mode, Checked::Valid(AlphaMode::Blend)),
         double_sided: source.double_sided,
     })
 }

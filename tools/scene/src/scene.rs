@@ -150,6 +150,9 @@ pub struct SceneMaterial {
     pub glass_texture: Option<u32>,
     /// Alpha below which a surface is not there; none for opaque materials.
     pub alpha_cutoff: Option<f32>,
+    /// A surface is there by the part that is its alpha: its shadow is as dark, and where that is less than a
+    /// half it is not seen.
+    pub blended: bool,
     /// Seen from both sides. Other surfaces are seen from their front only.
     pub double_sided: bool,
 }

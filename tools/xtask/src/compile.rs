@@ -35,11 +35,14 @@ pub fn compile(root: &Path, path: &str) -> Result<Result<Compiled, String>, Task
     options.set_optimization_level(OptimizationLevel::Zero);
     options.set_warnings_as_errors();
     options.set_include_callback(|requested, kind, includer, _depth| {
-        let (path, text) = find(root, requested, kind, includer)?;
+        let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
+        let (path, text) = find(root, requested, kind, (includer, folder))?;
         let mut included = included.borrow_mut();
         included.by.entry(path.clone()).or_insert_with(|| includer.to_owned());
         included.sources.insert(path.clone(), text.clone());
-        Ok(ResolvedInclude { resolved_name: path, content: text })
+        // A kernel that is included has the version of its includer
+        let content = text.replacen("#version 460\n", "\n", 1);
+        Ok(ResolvedInclude { resolved_name: path, content })
     });
 
     let (kind, stage) = match Path::new(path).extension().and_then(std::ffi::OsStr::to_str) {
@@ -84,14 +87,21 @@ impl Included {
     }
 }
 
-/// Finds an included file: beside its includer, then in each of the include folders.
-fn find(root: &Path, requested: &str, kind: IncludeType, includer: &str) -> Result<(String, String), String> {
+/// Finds an included file: beside its includer, then in each of the include folders, then in the kernel's, as
+/// hosts have files for ours to include.
+fn find(
+    root: &Path,
+    requested: &str,
+    kind: IncludeType,
+    (includer, kernel_folder): (&str, &str),
+) -> Result<(String, String), String> {
     let beside = includer.rsplit_once('/').map_or("", |(folder, _)| folder);
     let mut folders = vec![];
     if kind == IncludeType::Relative {
         folders.push(beside);
     }
     folders.extend(INCLUDE_FOLDERS);
+    folders.push(kernel_folder);
     for folder in &folders {
         if let Some(path) = join(folder, requested)
             && let Ok(text) = read(&root.join(&path))

@@ -212,17 +212,19 @@ fn host_g_buffer(folder: &Path) -> Vec<Case> {
 /// The exported kernels with the examples' shadows and blocker, and with an acceleration structure.
 fn host_bridges(folder: &Path) -> Vec<Case> {
     let hosts = [
-        ("shade", "AREALIGHT_HOST_VISIBILITY", "shadows of the host"),
-        ("shadow_rays", "AREALIGHT_HOST_BLOCKER", "a blocker of the host"),
-        ("shadow_rays", "AREALIGHT_RAY_QUERY", "an acceleration structure"),
+        ("shade", &["AREALIGHT_HOST_VISIBILITY"][..], "shadows of the host"),
+        ("shadow_rays", &["AREALIGHT_HOST_BLOCKER"], "a blocker of the host"),
+        ("shadow_rays", &["AREALIGHT_HOST_ALPHA"], "cut out by the host"),
+        ("shadow_rays", &["AREALIGHT_RAY_QUERY"], "an acceleration structure"),
+        ("shadow_rays", &["AREALIGHT_RAY_QUERY", "AREALIGHT_HOST_ALPHA"], "one that is cut out"),
     ];
-    let cases = hosts.into_iter().flat_map(|(kernel, option, name)| {
+    let cases = hosts.into_iter().flat_map(|(kernel, options, name)| {
         [Tool::Glslang, Tool::Glslc].map(|tool| Case {
             tool,
             compute: true,
             shader: folder.join(format!("kernels/{kernel}.comp")),
             name: name.into(),
-            macros: vec![(option.into(), "1".into())],
+            macros: options.iter().map(|option| ((*option).into(), "1".into())).collect(),
             lacks: None,
         })
     });

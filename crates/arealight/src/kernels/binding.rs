@@ -97,7 +97,7 @@ const BOUND: [(&str, &str); 19] = [
          many rays (rgba16f)",
     ),
     ("nodes", "Blockers::nodes: GpuBvhNode[]"),
-    ("blocker_triangles", "Blockers::triangles: vec4[3][]"),
+    ("blocker_triangles", "Blockers::triangles: vec4[3][], in w of the first the bits of a number"),
     (
         "shadow_history",
         "plan::shadow_history_size bytes, zeros before the first frame; used only with \

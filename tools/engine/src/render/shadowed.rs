@@ -1,13 +1,14 @@
 //! Shading with shadows: the same picture, with what of each light's radiance arrives.
 
-use crate::host::{Buffer, DescriptorPool, Image, ImageDescription, Usage};
+use crate::host::{Buffer, DescriptorPool, Image, ImageDescription, OwnSet, Usage};
 use crate::{Engine, EngineError, Kept, SceneRenderer};
 use arealight::plan::{self, Output, ShadeOptions, ShadowFilter, ShadowHistory};
 use arealight::{Blockers, Effects};
 use arealight_scene::{BufferError, SceneBuffers};
 use arealight_tool_kernels::gpu::GpuTriangle;
+use arealight_tool_kernels::kernels::SHADOW_RAYS_MASKED;
 use arealight_vk::{
-    BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowFrame, ShadowOptions,
+    BlockerResources, Bound, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowFrame, ShadowOptions,
     ShadowPass, ShadowPassInfo, ShadowResources, ShadowStage,
 };
 use ash::vk;
@@ -26,6 +27,8 @@ pub struct ShadowedView {
     picks: Buffer,
     history: Buffer,
     blockers: [Buffer; 2],
+    /// Set 1, where blockers are cut out.
+    masks: Option<OwnSet>,
 }
 
 impl ShadowedView {
@@ -33,6 +36,13 @@ impl ShadowedView {
     fn begin(&self, commands: vk::CommandBuffer) {
         for image in [&self.unshadowed, &self.shadows] {
             image.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
+        }
+    }
+
+    fn shadow_sets(&self) -> Bound<'_> {
+        match &self.masks {
+            None => Bound::Set(self.sets[1]),
+            Some(masks) => Bound::Sets([self.sets[1], masks.set]),
         }
     }
 
@@ -74,12 +84,16 @@ impl ShadowedView {
 }
 
 /// What of a scene blocks light: every triangle but those of lamps, which would hide the lights that they
-/// are.
+/// are. Those that are not all there have as their number one more than their index in the scene.
 fn blockers(scene: &SceneBuffers) -> Result<Blockers, BufferError> {
-    let triangles = scene.triangles.iter().filter(|triangle| triangle.flags & GpuTriangle::LAMP == 0);
-    let triangles: Vec<_> =
-        triangles.map(|triangle| [triangle.p0, triangle.p1, triangle.p2].map(Vec3::from_array)).collect();
-    Ok(Blockers::new(&triangles)?)
+    let numbered = (1..).zip(&scene.triangles);
+    let shown: Vec<_> = numbered.filter(|(_, triangle)| triangle.flags & GpuTriangle::LAMP == 0).collect();
+    let vertices = |(_, t): &(u32, &GpuTriangle)| [t.p0, t.p1, t.p2].map(Vec3::from_array);
+    let number = |index: u32| {
+        let (number, triangle) = shown[index as usize];
+        if scene.materials[triangle.material as usize].is_whole() { 0 } else { number }
+    };
+    Ok(Blockers::new(&shown.iter().map(vertices).collect::<Vec<_>>())?.with_alpha(number))
 }
 
 impl SceneRenderer<'_> {
@@ -96,11 +110,16 @@ impl SceneRenderer<'_> {
     ) -> Result<ShadowedView, EngineError> {
         let (engine, host) = (self.engine, self.engine.host());
         let options = self.seen(options);
+        // Blockers that are cut out are asked for in a module and a set of our own
+        let is_masked = scene.materials.iter().any(|material| !material.is_whole());
+        let masks = is_masked.then(|| self.masks()).transpose()?;
+        let module = is_masked.then(|| SHADOW_RAYS_MASKED.words());
+        let host_set = masks.as_ref().map(|masks| masks.layout);
         // doc: passes
         // SAFETY: The passes are dropped when no frame uses them, before the device.
         let (shade, shadow) = unsafe {
             let output = ShadowOptions { filter, history, output: Output::Add };
-            let info = ShadowPassInfo { options, shadows: output, ..ShadowPassInfo::default() };
+            let info = ShadowPassInfo { options, shadows: output, module, host_set };
             (ShadePass::new(engine.context(), options)?, ShadowPass::new(engine.context(), info)?)
         };
         // Blockers::new of the scene's triangles; upload its nodes and triangles
@@ -125,6 +144,7 @@ impl SceneRenderer<'_> {
                 engine.storage("blocker nodes", &blockers.nodes)?,
                 engine.storage("blocker triangles", &blockers.triangles)?,
             ],
+            masks,
             shade: Kept::new(host, shade),
             shadow: Kept::new(host, shadow),
         };
@@ -140,6 +160,13 @@ impl SceneRenderer<'_> {
         view.shade.prepare(&frame)?;
         view.shadow.prepare(frame.lights)?;
         Ok(view)
+    }
+
+    /// What [`SHADOW_RAYS_MASKED`] reads.
+    fn masks(&self) -> Result<OwnSet, EngineError> {
+        let [_, own @ ..] = self.geometry.each_ref().map(|buffer| Resource::buffer(buffer.handle()));
+        // SAFETY: The buffers live until submissions were waited for.
+        Ok(unsafe { self.engine.host().own_set(1, &own) }?)
     }
 
     fn shadow_resources(&self, view: &ShadowedView) -> ShadowResources {
@@ -197,7 +224,7 @@ impl SceneRenderer<'_> {
             unsafe {
                 view.shade.record(commands, view.sets[0], &shade)?;
                 self.engine.compute_barrier(commands);
-                view.shadow.record(commands, view.sets[1], &resources, &frame)?;
+                view.shadow.record(commands, view.shadow_sets(), &resources, &frame)?;
             }
             // doc end
             Ok(())
@@ -237,7 +264,7 @@ impl SceneRenderer<'_> {
         self.engine.host().try_submit_timed(|commands| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
             // SAFETY: As in `shade_shadowed`.
-            unsafe { view.shadow.record_stage(stage, commands, view.sets[1], &resources, &frame)? };
+            unsafe { view.shadow.record_stage(stage, commands, view.shadow_sets(), &resources, &frame)? };
             Ok(())
         })
     }

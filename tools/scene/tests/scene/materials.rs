@@ -103,7 +103,10 @@ fn what_is_out_of_range_or_unknown_is_said() {
             json!({ "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": -1 } } }),
             "emissiveStrength -1 must be finite and not negative: 0 is used",
         ),
-        (json!({ "alphaMode": "BLEND" }), "alphaMode BLEND is not supported: treated as opaque"),
+        (
+            json!({ "alphaMode": "BLEND" }),
+            "alphaMode BLEND: seen whole where alpha is 0.5 or more; its shadow is blended",
+        ),
         (
             json!({ "extensions": { "KHR_materials_volume": { "thicknessFactor": 1 } } }),
             "KHR_materials_volume is not supported: ignored",
