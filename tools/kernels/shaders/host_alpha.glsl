@@ -1,4 +1,4 @@
-// What is there of a scene's triangles that have a number: for shadow_rays.comp, from the scene's own buffers.
+// What is there of a scene's triangles that have a number: for shadow_rays.comp, from the scene's buffers.
 #define SCENE_SET 1
 #define SCENE_BINDING 0
 #include "scene.glsl"
