@@ -41,8 +41,8 @@ pub unsafe extern "C" fn arealight_blockers_create(
     out: *mut *mut ArealightBlockers,
 ) -> ArealightResult {
     call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
         let count = triangle_count as usize;
+        // SAFETY: the caller vouches for the pointers, here and below.
         let (numbers, alphas) = unsafe {
             arguments::write(out, std::ptr::null_mut(), "out")?;
             let alphas = if alphas.is_null() { &[] } else { arguments::array(alphas, count, "alphas")? };
