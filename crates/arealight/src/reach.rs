@@ -35,7 +35,7 @@ pub fn radius(light: &Light, threshold: f64, density: f64) -> f64 {
 
 /// The corners of an axis-aligned box, in world positions, outside of which a surface reflects no more of the
 /// light than outside of [`radius`]: the box of that sphere, or of the half in front of a flat one-sided
-/// light.
+/// light. None is NaN; all are infinite where the radius is.
 pub fn bounds(light: &Light, radius: f64) -> [DVec3; 2] {
     let (center, size) = (light.shape.center(), size_about(&light.shape));
     let shines_to_one_side = light.shape.is_flat() && !light.two_sided;
@@ -44,8 +44,8 @@ pub fn bounds(light: &Light, radius: f64) -> [DVec3; 2] {
         if !shines_to_one_side || axis >= 0.0 || normal == DVec3::ZERO {
             return radius;
         }
-        // In the plane of the light, which is as flat as LightShape::is_flat says
-        radius * (1.0 - axis * axis).max(0.0).sqrt() + FLAT * size
+        // In the plane of the light, which is as flat as LightShape::is_flat says, and of a float32 normal
+        radius * ((1.0 - axis * axis).max(0.0).sqrt() + 1e-6) + FLAT * size
     };
     [center - (-normal).map(along), center + normal.map(along)]
 }

@@ -7,9 +7,10 @@
 // bounds as arealight::reach in Rust, a millionth wider for float32: no point outside of them reflects more
 // than a threshold. Included by itself; it needs nothing of options.glsl.
 //
-//     float density = AREALIGHT_INVERSE_PI + lobe_density; // of Lambert's lobe, and LightTable::lobe_density
-//     of the least roughness float reach = arealight_reach(radiance, arealight_disk_extent(axis_u, axis_v),
-//     threshold, density);
+//     // Of Lambert's lobe, and LightTable::lobe_density of the least roughness
+//     float density = AREALIGHT_INVERSE_PI + lobe_density;
+//     ArealightExtent extent = arealight_disk_extent(axis_u, axis_v);
+//     float reach = arealight_reach(radiance, extent, threshold, density);
 
 // The reach of what nothing bounds: a light with an image, or a threshold of zero.
 const float AREALIGHT_UNBOUNDED = 3e38;

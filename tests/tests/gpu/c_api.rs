@@ -462,6 +462,14 @@ fn c_lights_reach_as_far_as_rust_says() {
     let [low, high] = arealight::reach::bounds(&light, radius).map(|corner| corner.to_array());
     assert_eq!(reach, ArealightReach { center: moon.center, radius, low, high });
     assert!(radius > moon.radius && radius.is_finite());
+    // Nothing bounds an image, and a threshold of zero: on a wall neither
+    let wall = ArealightLight { radiance: [1.0; 3], ..self::light() };
+    let image = ArealightLight { textured: 1, texture_coordinates: CORNERS.as_ptr(), ..wall };
+    for (screen, threshold) in [(wall, 0.0), (image, 0.01)] {
+        good(found(&screen, threshold, &mut reach));
+        let everywhere = [reach.low.map(|low| -low), reach.high].concat();
+        assert_eq!((reach.radius, everywhere), (f64::INFINITY, vec![f64::INFINITY; 6]));
+    }
     // What cannot be answered
     refused(found(&moon, f64::NAN, &mut reach), ErrorArgument, "threshold: NaN must be finite");
     let flat = ArealightLight { radius: -1.0, ..moon };

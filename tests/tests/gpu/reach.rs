@@ -1,14 +1,16 @@
 //! How far lights are of any matter, by points outside.
 
 use arealight::reach::{self, DIFFUSE_DENSITY};
-use arealight::{Light, LightShape, LightTable, PackedLights, Quality, SpecularLobes, TubeEnds};
+use arealight::{
+    Light, LightShape, LightTable, LightTexture, PackedLights, Quality, SpecularLobes, TubeEnds,
+};
 use arealight_oracle::material::{Material, Surface};
 use arealight_oracle::shading::{RelativeLight, ltc, shape_ltc_on, shape_seen_from};
 use arealight_oracle::stream::Stream;
 use arealight_tests::TestEngine;
 use arealight_tests::kernel::LIGHT_REACH;
 use arealight_vk::Resource;
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use std::sync::LazyLock;
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
@@ -157,12 +159,62 @@ fn what_nothing_bounds_reaches_everywhere_and_dark_lights_nowhere() {
     assert!((far - size - 2.0 * (near - size)).abs() < 1e-9);
 }
 
+/// Quads and disks of one side towards both ends of each axis: screens on walls, images on ceilings.
+fn upright() -> Vec<Light> {
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+    let turned = (0..3).flat_map(|axis| [(axis, 1.0), (axis, -1.0)]);
+    let shapes = turned.flat_map(|(axis, side)| {
+        let [u, v] = [axes[(axis + 1) % 3], axes[(axis + 2) % 3] * side];
+        let quad = [-u - v, u - v, u + v, v - u].map(|vertex| vertex + DVec3::X).to_vec();
+        [LightShape::Polygon(quad), LightShape::Disk { center: DVec3::Y, axis_u: u, axis_v: v }]
+    });
+    shapes.map(|shape| Light { radiance: Vec3::ONE, shape, ..Light::default() }).collect()
+}
+
+#[test]
+fn the_box_of_what_nothing_bounds_is_everything() {
+    let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(DVec2::from).to_vec();
+    let textured = upright().into_iter().map(|light| {
+        let uvs = if light.shape.is_polygonal() { corners.clone() } else { vec![] };
+        Light { texture: Some(LightTexture { layer: 0, uvs }), ..light }
+    });
+    let plain = [lights(), upright()].concat();
+    let engine = TestEngine::new();
+    for (threshold, lights) in [(0.0, plain), (THRESHOLD, textured.collect())] {
+        for (index, light) in lights.iter().enumerate() {
+            light.validate().unwrap();
+            let [low, high] = reach::bounds(light, reach::radius(light, threshold, 1.0));
+            assert_eq!((low, high), (DVec3::NEG_INFINITY, DVec3::INFINITY), "light {index}");
+        }
+        let Some(engine) = &engine else { continue };
+        for (index, (radius, [low, high])) in
+            reaches_on_gpu(engine, &lights, threshold, 1.0).into_iter().enumerate()
+        {
+            // Behind a light, a millionth of the largest radius that it has, as float32 rounds it
+            let far = 0.99e-6 * radius;
+            assert!(radius > 1e38 && radius < f64::INFINITY, "light {index}: {radius}");
+            assert!(low.cmple(DVec3::splat(-far)).all() && high.cmpge(DVec3::splat(far)).all(), "{index}");
+        }
+    }
+    // The twin: with a threshold, walls end the boxes of what is on them
+    for light in upright() {
+        let [low, high] = reach::bounds(&light, reach::radius(&light, THRESHOLD, 1.0));
+        let depth = (high - low).min_element();
+        assert!(depth < 0.6 * (high - low).max_element() && low.cmplt(high).all(), "{low} {high}");
+    }
+}
+
 /// What the GPU says of lights: radius, low and high, in their order.
-fn reaches_on_gpu(engine: &TestEngine, lights: &[Light], density: f64) -> Vec<(f64, [DVec3; 2])> {
+fn reaches_on_gpu(
+    engine: &TestEngine,
+    lights: &[Light],
+    threshold: f64,
+    density: f64,
+) -> Vec<(f64, [DVec3; 2])> {
     let packed = PackedLights::new(lights, DVec3::ZERO).unwrap();
     let summary = packed.summary();
-    let asked =
-        [summary.light_count, summary.shape_count, (THRESHOLD as f32).to_bits(), (density as f32).to_bits()];
+    let [threshold, density] = [threshold, density].map(|value| (value as f32).to_bits());
+    let asked = [summary.light_count, summary.shape_count, threshold, density];
     let host = engine.host();
     let buffers = [
         host.storage_buffer("lights", &packed.lights).unwrap(),
@@ -187,7 +239,7 @@ fn the_gpu_reaches_as_far_as_rust_says() {
     let dark = Light { radiance: Vec3::ZERO, ..lights[0].clone() };
     lights.push(dark);
     for (index, (light, (radius, [low, high]))) in
-        lights.iter().zip(reaches_on_gpu(&engine, &lights, density)).enumerate()
+        lights.iter().zip(reaches_on_gpu(&engine, &lights, THRESHOLD, density)).enumerate()
     {
         let expected = reach::radius(light, THRESHOLD, density);
         let is_bent = light.shape.is_polygonal() && !light.shape.is_flat();
@@ -209,6 +261,6 @@ fn the_gpu_reaches_as_far_as_rust_says() {
         assert!((high - bounds[1]).abs().max_element() <= far, "light {index}: {high} for {}", bounds[1]);
     }
     // The twin: another density is another reach
-    let far = reaches_on_gpu(&engine, &lights[..1], 4.0 * density)[0].0;
+    let far = reaches_on_gpu(&engine, &lights[..1], THRESHOLD, 4.0 * density)[0].0;
     assert!(far > 1.5 * reach::radius(&lights[0], THRESHOLD, density));
 }

@@ -3,8 +3,9 @@
 //! The kinds are stages (fragment, compute), images and samplers (apart, combined), and each option of the
 //! library, alone and with every kind of light. They are read from the library itself, so that a new one is
 //! in the matrix from its first day. Each compiler gets every option in one stage with one way of images;
-//! with `--all`, in every stage with each. Every module goes through spirv-val. Cases that must fail, and say
-//! why, show that the matrix can.
+//! with `--all`, in every stage with each. Every module goes through spirv-val, and those of compute shaders
+//! with separate samplers and without open options through naga: each option, optimised and not. Cases that
+//! must fail, and say why, show that the matrix can.
 
 use crate::TaskError;
 use crate::library::Library;
@@ -49,6 +50,8 @@ struct Case {
     /// What differs from other cases, in words.
     name: String,
     macros: Vec<(String, String)>,
+    /// What naga reads goes through it.
+    naga: bool,
     /// Compilation must fail, and name this.
     lacks: Option<String>,
 }
@@ -94,11 +97,13 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
 /// The hosts of the matrix.
 fn hosts(shader: &Path, library: &Library, all: bool) -> Vec<Case> {
     let mut cases = vec![];
-    let mut add = |tool, compute, combined, name: &str, mut macros: Vec<(String, String)>, lacks| {
+    let mut add = |tool, compute, combined: bool, name: &str, mut macros: Vec<(String, String)>, lacks| {
         macros.push(("COMPUTE".into(), u32::from(compute).to_string()));
         macros.push(("COMBINED".into(), u32::from(combined).to_string()));
+        // WebGPU has neither combined samplers nor what a pipeline leaves open
+        let naga = !combined && !macros.iter().any(|(name, _)| name == "SPECIALIZED");
         let name = format!("{name}, {}", if combined { "combined samplers" } else { "separate samplers" });
-        cases.push(Case { tool, compute, shader: shader.to_owned(), name, macros, lacks });
+        cases.push(Case { tool, compute, shader: shader.to_owned(), name, macros, naga, lacks });
     };
     for (first, tool) in [Tool::Glslang, Tool::Glslc].into_iter().enumerate() {
         for (kind, (compute, combined)) in KINDS.into_iter().enumerate() {
@@ -114,8 +119,16 @@ fn hosts(shader: &Path, library: &Library, all: bool) -> Vec<Case> {
             add(tool, true, false, &format!("without {}", bridge.name), macros, Some(bridge.name));
         }
     }
+    for (name, macros) in variants(library).into_iter().filter(|(name, _)| name.ends_with(ALONE)) {
+        for optimiser in ["-O0", "-O"] {
+            add(Tool::GlslcOptimised(optimiser), true, false, &name, macros.clone(), None);
+        }
+    }
     cases
 }
+
+/// What the name of a variant ends in that changes one option, and no kind of light beside it.
+const ALONE: &str = " alone";
 
 /// Stages and images: whether they are compute, and combined with their samplers.
 const KINDS: [(bool, bool); 4] = [(false, false), (false, true), (true, false), (true, true)];
@@ -149,7 +162,7 @@ fn variants(library: &Library) -> Vec<(String, Vec<(String, String)>)> {
     ];
     for (name, default) in &library.options {
         let changed = (name.as_str(), 1 - default.min(&1));
-        variants.push((format!("{name} {} alone", changed.1), set(&[changed])));
+        variants.push((format!("{name} {}{ALONE}", changed.1), set(&[changed])));
         if !has_bridges(name) {
             variants.push((
                 format!("{name} {} with every kind of light", changed.1),
@@ -190,7 +203,15 @@ fn examples(folder: &Path) -> Result<Vec<Case>, TaskError> {
         let optimised = ["-O", "-Os"].map(Tool::GlslcOptimised);
         for tool in [Tool::Glslang, Tool::Glslc].into_iter().chain(optimised) {
             let (shader, macros) = (shader.clone(), vec![]);
-            cases.push(Case { tool, compute, shader, name: "example".into(), macros, lacks: None });
+            cases.push(Case {
+                tool,
+                compute,
+                shader,
+                name: "example".into(),
+                macros,
+                naga: false,
+                lacks: None,
+            });
         }
     }
     Ok(cases)
@@ -204,6 +225,7 @@ fn host_g_buffer(folder: &Path) -> Vec<Case> {
         shader: folder.join("kernels/shade.comp"),
         name: "a G-buffer of the host".into(),
         macros: vec![("AREALIGHT_HOST_G_BUFFER".into(), "1".into())],
+        naga: false,
         lacks: None,
     };
     [Tool::Glslang, Tool::Glslc].map(case).to_vec()
@@ -225,6 +247,7 @@ fn host_bridges(folder: &Path) -> Vec<Case> {
             shader: folder.join(format!("kernels/{kernel}.comp")),
             name: name.into(),
             macros: options.iter().map(|option| ((*option).into(), "1".into())).collect(),
+            naga: false,
             lacks: None,
         })
     });
@@ -260,8 +283,11 @@ impl Case {
             return Ok(failure("does not compile without a message"));
         }
         let output = validate(module)?;
-        let text = crate::matrix::said(&output);
-        Ok((!output.status.success()).then(|| format!("{}: spirv-val says\n{text}", self.title())))
+        if !output.status.success() {
+            return Ok(Some(format!("{}: spirv-val says\n{}", self.title(), crate::matrix::said(&output))));
+        }
+        let refused = if self.naga { naga_refuses(module)? } else { None };
+        Ok(refused.map(|why| format!("{}: naga says\n{why}", self.title())))
     }
 
     fn compile(&self, include: &Path, module: &Path) -> Result<Output, TaskError> {
@@ -294,6 +320,18 @@ impl Case {
 fn validate(module: &Path) -> Result<Output, TaskError> {
     let output = Command::new("spirv-val").args(["--target-env", "vulkan1.1"]).arg(module).output();
     output.map_err(|source| TaskError::Program { program: "spirv-val", package: "spirv-tools", source })
+}
+
+/// Why naga does not take a module by WebGPU's rules, if it does not.
+fn naga_refuses(module: &Path) -> Result<Option<String>, TaskError> {
+    use naga::valid::{Capabilities, ValidationFlags, Validator};
+    let bytes = std::fs::read(module).map_err(TaskError::file(module))?;
+    let read = match naga::front::spv::parse_u8_slice(&bytes, &naga::front::spv::Options::default()) {
+        Ok(read) => read,
+        Err(error) => return Ok(Some(error.to_string())),
+    };
+    let checked = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&read);
+    Ok(checked.err().map(|error| error.emit_to_string("")))
 }
 
 /// Whether spirv-val refuses a good module that lacks its last word.
@@ -338,7 +376,7 @@ mod tests {
         let shader = folder.join("host.comp");
         std::fs::write(&shader, text).unwrap();
         let lacks = lacks.map(str::to_owned);
-        Case { tool, compute: true, shader, name: "test".into(), macros: vec![], lacks }
+        Case { tool, compute: true, shader, name: "test".into(), macros: vec![], naga: false, lacks }
     }
 
     const GOOD: &str = "#version 450\nlayout(local_size_x = 1) in;\nvoid main() {}\n";

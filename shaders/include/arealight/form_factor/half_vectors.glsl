@@ -62,7 +62,8 @@ ArealightConic arealight_conic_half(ArealightConic conic, bool second) {
 
 // Part `part` of a conic: 1 is all of it, 2 n and 2 n + 1 are the halves of n.
 ArealightConic arealight_conic_part(ArealightConic conic, uint part) {
-    for (int bit = findMSB(part) - 1; bit >= 0; bit--) {
+    // Of an int: naga takes findMSB of a uint for a uint
+    for (int bit = findMSB(int(part)) - 1; bit >= 0; bit--) {
         conic = arealight_conic_half(conic, ((part >> bit) & 1u) != 0u);
     }
     return conic;
