@@ -29,6 +29,16 @@ fill() { sed -e "s|@PREFIX@|$prefix|" -e "s|@VERSION@|$version|" -e "s|@ABI@|$ab
 
 install -Dm644 -t "$prefix/include" "$crate/include/arealight.h"
 install -Dm644 -t "$prefix/lib" "$built/libarealight_capi.a"
+if [[ "$(uname -s)" == Linux ]]; then
+    # What is not ours to offer is no symbol for others: one object, of whose names only arealight_* are global
+    parts="$(mktemp -d)"
+    ld -r --whole-archive "$built/libarealight_capi.a" -o "$parts/all.o"
+    objcopy --wildcard --keep-global-symbol='arealight_*' --remove-section .llvmbc --remove-section .llvmcmd \
+        "$parts/all.o" "$parts/arealight.o"
+    rm "$prefix/lib/libarealight_capi.a"
+    ar rcs "$prefix/lib/libarealight_capi.a" "$parts/arealight.o"
+    rm -r "$parts"
+fi
 # Programs ask the loader for the name with the ABI's version, the linker for the one without
 install -Dm755 "$built/libarealight_capi.so" "$prefix/lib/libarealight_capi.so.$abi"
 ln -sf "libarealight_capi.so.$abi" "$prefix/lib/libarealight_capi.so"

@@ -11,6 +11,20 @@ export PKG_CONFIG_PATH="$scratch/prefix/lib/pkgconfig"
 # Drivers and layers of this machine may be found by the rest of it
 export LD_LIBRARY_PATH="$scratch/prefix/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
 
+# Nothing but arealight_* is offered
+for names in "nm -D --defined-only $scratch/prefix/lib/libarealight_capi.so" \
+    "nm -g --defined-only $scratch/prefix/lib/libarealight_capi.a"; do
+    offered="$($names | awk 'NF == 3 { print $3 }')"
+    if grep -v '^arealight_' <<<"$offered" || [[ "$(wc -l <<<"$offered")" -lt 30 ]]; then
+        echo "error: $names: names that are not ours, or too few" >&2
+        exit 1
+    fi
+done
+# The header by the standards that it says
+for standard in "cc -xc -std=c99" "c++ -xc++ -std=c++11"; do
+    $standard -pedantic -Wall -Wextra -Werror -fsyntax-only "$scratch/prefix/include/arealight.h"
+done
+
 # shellcheck disable=SC2046 # flags are words
 c++ -std=c++14 -ffp-contract=off "$root/examples/cpp/host.cpp" -o "$scratch/host" \
     $(pkg-config --cflags --libs arealight vulkan)

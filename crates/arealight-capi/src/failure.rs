@@ -1,8 +1,9 @@
 //! Results, what they mean in words, and panics that stay inside.
 
+use arealight::LightFault;
 use arealight_vk::Error;
-use std::cell::RefCell;
-use std::ffi::{CString, c_char};
+use std::cell::Cell;
+use std::ffi::c_char;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What became of a call. Whatever is not AREALIGHT_RESULT_OK comes with a message: arealight_last_error.
@@ -63,6 +64,9 @@ impl From<Error> for Failure {
 fn in_words_of_c(message: &str) -> String {
     let names = [
         ("ShadeOptions::MOST_SHADOW_RAYS", "4"),
+        ("ShadePassInfo::descriptors", "ArealightPassOptions.descriptors"),
+        ("Descriptors::LightOffsets", "AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS"),
+        ("Bound::Pushed", "arealight_pass_record_pushed"),
         ("ShadeOptions::reads", "AREALIGHT_PLANE_* and ArealightResources.planes"),
         ("ShadeOptions::", "ArealightPassOptions."),
         ("ShadowOptions::", "ArealightShadowOptions."),
@@ -72,27 +76,43 @@ fn in_words_of_c(message: &str) -> String {
 
 impl From<arealight::LightError> for Failure {
     fn from(error: arealight::LightError) -> Self {
-        Self::new(ArealightResult::ErrorLight, error.to_string())
+        // A tube is by its middle in C, a mesh's faces by their counts
+        let text = error.to_string();
+        let text = match &error.fault {
+            LightFault::NoAxis { .. } => text.replace("p0 and p1:", "axis_u: zero:"),
+            _ => text.replace(": faces", ": face_vertex_counts"),
+        };
+        Self::new(ArealightResult::ErrorLight, text)
     }
 }
 
+/// The most bytes of a message, with the zero at its end.
+const LONGEST: usize = 4096;
+
 thread_local! {
-    static MESSAGE: RefCell<CString> = RefCell::default();
+    /// One place a thread: it stays where it is, whatever is written into it.
+    static MESSAGE: [Cell<u8>; LONGEST] = const { [const { Cell::new(0) }; LONGEST] };
 }
 
 fn remember(message: &str) {
-    // A message ends at its first zero byte, as C has it
+    // A message ends at its first zero byte, as C has it, or where there is no more room
     let text = message.split('\0').next().unwrap_or_default();
-    let text = CString::new(text).unwrap_or_default();
+    let end = (0..=text.len().min(LONGEST - 1)).rfind(|end| text.is_char_boundary(*end));
+    let text = &text[..end.unwrap_or_default()];
     // The thread's end may have taken the message away; then nobody can read it
-    let _ = MESSAGE.try_with(|last| last.replace(text));
+    let _ = MESSAGE.try_with(|last| {
+        for (place, byte) in last.iter().zip(text.bytes().chain([0])) {
+            place.set(byte);
+        }
+    });
 }
 
 /// The message of this thread's last failed call, in UTF-8: what is wrong, where, and what to do. Empty where
-/// none has. Valid until the next call of this thread that fails.
+/// none has. At most 4,095 bytes, in a buffer that the thread keeps until it ends: the next call of this
+/// thread that fails writes its own message there.
 #[unsafe(no_mangle)]
 pub extern "C" fn arealight_last_error() -> *const c_char {
-    MESSAGE.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
+    MESSAGE.try_with(|last| last.as_ptr().cast()).unwrap_or(c"".as_ptr())
 }
 
 /// Runs a call of the host: keeps its message, and its panics.
@@ -138,6 +158,32 @@ mod tests {
         assert!(!text.contains("::"), "{text}");
     }
 
+    /// Texts of a crate's sources that are shown to nobody in C: those of what C has another of.
+    const OTHERS: [&str; 2] = ["area_lights.rs", "memory.rs"];
+
+    #[test]
+    fn no_text_of_the_recorder_has_a_name_of_rust() {
+        let sources = concat!(env!("CARGO_MANIFEST_DIR"), "/../arealight-vk/src");
+        let (mut folders, mut named) = (vec![std::path::PathBuf::from(sources)], 0);
+        while let Some(folder) = folders.pop() {
+            for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+                if path.is_dir() {
+                    folders.push(path);
+                } else if !OTHERS.iter().any(|other| path.ends_with(other)) {
+                    let text = std::fs::read_to_string(&path).unwrap().replace("\\\"", "");
+                    let code: Vec<&str> =
+                        text.lines().filter(|l| !l.trim_start().starts_with("//")).collect();
+                    for text in code.join("\n").split('"').skip(1).step_by(2) {
+                        named += usize::from(text.contains("::"));
+                        let said = in_words_of_c(text);
+                        assert!(!said.contains("::"), "{}: {said}", path.display());
+                    }
+                }
+            }
+        }
+        assert!(named > 5, "{named} texts have names");
+    }
+
     #[test]
     fn failures_have_messages_and_panics_stay_inside() {
         assert_eq!(last(), "");
@@ -147,6 +193,10 @@ mod tests {
         assert_eq!(last(), "lights: wrong", "success changes nothing");
         assert_eq!(call(|| panic!("on purpose")), ArealightResult::ErrorInternal);
         assert!(last().contains("on purpose"));
+        // What C evaluates from the right is the message of the call on the left
+        let before = arealight_last_error();
+        assert_eq!(call(|| Err(Failure::argument("é".repeat(5000)))), ArealightResult::ErrorArgument);
+        assert_eq!((before, last()), (arealight_last_error(), "é".repeat(2047)));
         // Each thread has its own
         assert_eq!(std::thread::spawn(last).join().unwrap(), "");
     }

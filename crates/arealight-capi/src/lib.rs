@@ -53,6 +53,16 @@ pub use types::*;
 /// SONAME ends in it.
 pub const AREALIGHT_ABI_VERSION: u32 = 2;
 
+/// Several threads may use these at once, as the header says of functions that take them as const.
+const _: fn() = || {
+    fn shared<T: Sync + 'static>() {}
+    shared::<Arealight>();
+    shared::<ArealightPass>();
+    shared::<ArealightShadowPass>();
+    shared::<ArealightBlockers>();
+    shared::<ArealightTextures>();
+};
+
 /// AREALIGHT_ABI_VERSION of the library, for those that load it at run time.
 #[unsafe(no_mangle)]
 pub extern "C" fn arealight_abi_version() -> u32 {

@@ -284,7 +284,7 @@ pub unsafe extern "C" fn arealight_pass_record(
             unsafe { (&handles::borrow(pass, "pass")?.pass, arguments::read(frame, "frame")?) };
         arguments::refuse_null([(command_buffer.is_null(), "command_buffer"), (set == 0, "set")])?;
         // SAFETY: as above.
-        let frame = unsafe { read_frame(frame) }?;
+        let frame = unsafe { read_frame_of(pass, frame) }?;
         let (command_buffer, set) =
             (vk::CommandBuffer::from_raw(command_buffer as u64), vk::DescriptorSet::from_raw(set));
         // SAFETY: the caller vouches for the command buffer and the set.
@@ -308,11 +308,12 @@ pub unsafe extern "C" fn arealight_pass_record_pushed(
     call(|| {
         // SAFETY: the caller vouches for the pointers, here and below.
         let (pass, arealight, resources, frame) = unsafe {
+            let pass = &handles::borrow(pass, "pass")?.pass;
             (
-                &handles::borrow(pass, "pass")?.pass,
+                pass,
                 handles::borrow(arealight, "arealight")?,
                 arguments::read(resources, "resources")?,
-                read_frame(arguments::read(frame, "frame")?)?,
+                read_frame_of(pass, arguments::read(frame, "frame")?)?,
             )
         };
         arguments::refuse_null([(command_buffer.is_null(), "command_buffer")])?;
@@ -322,6 +323,30 @@ pub unsafe extern "C" fn arealight_pass_record_pushed(
         // SAFETY: the caller vouches for the command buffer and the resources.
         Ok(unsafe { pass.record(command_buffer, bound, &frame) }?)
     })
+}
+
+/// A frame of a pass, with nothing that the pass would not read.
+///
+/// # Safety
+/// As [`read_frame`].
+unsafe fn read_frame_of(pass: &ShadePass, frame: &ArealightFrame) -> Result<ShadeFrame, Failure> {
+    let options = pass.options();
+    let stencil = frame.stencil_compare_mask | frame.stencil_reference;
+    for (is_read, value, field) in [
+        (options.shadow_rays > 0, u64::from(frame.seed), "seed: without shadow rays"),
+        (pass.tiles().is_some(), frame.tile_lists.buffer, "tile_lists: without tiles"),
+        (
+            options.stencil,
+            u64::from(stencil),
+            "stencil_compare_mask and stencil_reference: without a stencil",
+        ),
+    ] {
+        if !is_read && value != 0 {
+            return Err(Failure::argument(format!("frame.{field} in the pass must be 0, not {value}")));
+        }
+    }
+    // SAFETY: the same contract.
+    unsafe { read_frame(frame) }
 }
 
 /// # Safety
@@ -371,8 +396,10 @@ pub unsafe extern "C" fn arealight_pass_prepare(
 ) -> ArealightResult {
     call(|| {
         // SAFETY: the caller vouches for the pointers.
-        let (pass, frame) =
-            unsafe { (&handles::borrow(pass, "pass")?.pass, read_frame(arguments::read(frame, "frame")?)?) };
+        let (pass, frame) = unsafe {
+            let pass = &handles::borrow(pass, "pass")?.pass;
+            (pass, read_frame_of(pass, arguments::read(frame, "frame")?)?)
+        };
         Ok(pass.prepare(&frame)?)
     })
 }

@@ -293,7 +293,14 @@ fn calls_out_of_order_are_refused() {
         let cut = ArealightFrame { rows: [0, 4], ..dark_frame(8) };
         refused(record(commands, 8, &cut), ErrorArgument, "rows: 0 to 4 cut workgroups");
         let masked = ArealightFrame { stencil_compare_mask: 256, ..dark_frame(8) };
-        refused(record(commands, 8, &masked), ErrorArgument, "frame.stencil_compare_mask: 256");
+        let words =
+            "frame.stencil_compare_mask and stencil_reference: without a stencil in the pass must be 0";
+        refused(record(commands, 8, &masked), ErrorArgument, words);
+        let seeded = ArealightFrame { seed: 7, ..dark_frame(8) };
+        refused(record(commands, 8, &seeded), ErrorArgument, "frame.seed: without shadow rays");
+        let lists = arealight_capi::ArealightBuffer { buffer: 1, offset: 0, range: 4 };
+        let listed = ArealightFrame { tile_lists: lists, ..dark_frame(8) };
+        refused(record(commands, 8, &listed), ErrorArgument, "frame.tile_lists: without tiles");
         let moved = ArealightFrame { light_offsets: [0, 0, 256], ..dark_frame(8) };
         refused(record(commands, 8, &moved), ErrorArgument, "light_offsets: are given");
         // A pipeline ahead
