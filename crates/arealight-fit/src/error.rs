@@ -31,6 +31,19 @@ pub enum FitError {
         /// The Schlick part found.
         schlick: f64,
     },
+    /// The BRDF reflects more than arrives.
+    #[error(
+        "the BRDF's albedo at alpha {alpha}, cos_view {cos_view} is {albedo}; it must be at most 1, give or \
+        take 1e-5"
+    )]
+    MoreThanArrives {
+        /// The alpha of the node.
+        alpha: f64,
+        /// The cosine of its view angle.
+        cos_view: f64,
+        /// The albedo found.
+        albedo: f64,
+    },
     /// No direction has a usable value: densities or values are negative or not finite.
     #[error(
         "the BRDF at alpha {alpha}, cos_view {cos_view} has no usable value: each is negative or not finite"

@@ -72,6 +72,11 @@ pub fn fit(
         Texel { brdf, alpha, cos_view }
     };
 
+    // And of the last row at the horizon itself, where they differ from its lobes' own
+    let last_row = (size * (size - 1)..size * size)
+        .map(|i| magnitude_of_lobe(brdf, node_of(settings.size, i).0, 0.0))
+        .collect::<Result<Vec<_>, _>>()?;
+
     // Fit each column of each matrix from the normal to the horizon
     let shares: Vec<Vec<[f64; 2]>> = magnitude.iter().map(|m| settings.aim.shares(*m)).collect();
     let columns: Vec<Vec<Lobe>> = (0..settings.aim.matrices() * size)
@@ -102,10 +107,8 @@ pub fn fit(
         None
     };
 
-    // Integrate those of the last row anew, at the horizon itself, where they differ from its lobes' own
-    for (i, magnitude) in magnitude.iter_mut().enumerate().skip(size * (size - 1)) {
-        *magnitude = magnitude_of_lobe(brdf, node_of(settings.size, i).0, 0.0)?;
-    }
+    magnitude.truncate(size * (size - 1));
+    magnitude.extend(last_row);
     let table = into_table(brdf, settings, layers.collect(), &magnitude)?;
     Ok(match pairs {
         Some(pairs) => table.with_pairs(pairs)?,
@@ -163,12 +166,23 @@ pub fn fit_at(
     })?)
 }
 
+/// How far an albedo of 1 may be off by the numbers that it is integrated of; such a one counts as 1.
+const ALBEDO_ROUNDING: f64 = 1e-5;
+
 /// The albedos of a BRDF that has a lobe at an alpha and a view.
 fn magnitude_of_lobe(brdf: &dyn Brdf, alpha: f64, cos_view: f64) -> Result<Magnitude, FitError> {
     let magnitude = brdf.magnitude(alpha, cos_view);
     let Magnitude { albedo, schlick } = magnitude;
     let is_lobe = albedo.is_finite() && albedo > 0.0 && schlick.is_finite() && schlick > 0.0;
-    is_lobe.then_some(magnitude).ok_or(FitError::NoLobe { alpha, cos_view, albedo, schlick })
+    if !is_lobe {
+        return Err(FitError::NoLobe { alpha, cos_view, albedo, schlick });
+    }
+    if albedo > 1.0 + ALBEDO_ROUNDING {
+        return Err(FitError::MoreThanArrives { alpha, cos_view, albedo });
+    }
+    // A table has float32: what rounds to 1 there stays as it is
+    let is_above = albedo as f32 > 1.0;
+    Ok(if is_above { Magnitude { albedo: 1.0, schlick: schlick.min(1.0) } } else { magnitude })
 }
 
 impl Texel<'_> {
