@@ -170,10 +170,17 @@ fn variants(library: &Library) -> Vec<(String, Vec<(String, String)>)> {
             ));
         }
     }
+    let mut below_macros = set(&every_kind);
+    below_macros.extend(OF_HOSTS.split(' ').map(|name| (name.to_owned(), "1".to_owned())));
+    variants.push(("every kind of light below a host's macros".to_owned(), below_macros));
     let split = [&every_kind[..], &[("AREALIGHT_FOOTPRINT", 2)]].concat();
     variants.push(("AREALIGHT_FOOTPRINT 2 with every kind of light".to_owned(), set(&split)));
     variants
 }
+
+/// Names that engines define, which the library has for nothing of its own.
+const OF_HOSTS: &str = "PI TAU EPSILON INFINITY N V L H R T B F0 F90 NdotL near far half saturate lerp rcp \
+                        rsqrt mad frac float3 luminance sqr MAX_LIGHTS TILE_SIZE";
 
 /// Whether an option decides which bridges a host has to define: those are 0 or 1, not constants of a
 /// pipeline.
