@@ -79,7 +79,7 @@ impl From<arealight::LightError> for Failure {
         // A tube is by its middle in C, a mesh's faces by their counts
         let text = error.to_string();
         let text = match &error.fault {
-            LightFault::NoAxis { .. } => text.replace("p0 and p1:", "axis_u: zero:"),
+            LightFault::NoAxis { .. } => text.replace("p0 and p1:", "axis_u: is zero:"),
             _ => text.replace(": faces", ": face_vertex_counts"),
         };
         Self::new(ArealightResult::ErrorLight, text)

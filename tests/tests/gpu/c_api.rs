@@ -131,7 +131,7 @@ fn lights_that_cannot_be_shaded_are_named() {
             "lights[1].texture_coordinates: is null",
         ),
         (ArealightLight { ends: 3, ..tube }, ErrorArgument, "lights[1].ends: 3"),
-        (tube, ErrorLight, "lights[1] 'moon': p0 and p1"),
+        (tube, ErrorLight, "lights[1] 'moon': axis_u: is zero"),
         (ArealightLight { radius: -1.0, name: null(), ..moon() }, ErrorLight, "lights[1]: radius: -1"),
         (ArealightLight { kind: AREALIGHT_LIGHT_DISK, ..moon() }, ErrorLight, "'moon': axis_u and axis_v"),
         (ArealightLight { textured: 1, ..moon() }, ErrorLight, "'moon': texture: only polygons and disks"),
@@ -218,11 +218,11 @@ fn holes_and_faces_that_cannot_be_are_named() {
             "lights[0] 'lamp': holes[0]: vertices[0]",
         ),
         (mesh(null()), ErrorArgument, "lights[0].face_vertex_counts: is null"),
-        (mesh([4, 2].as_ptr()), ErrorLight, "lights[0] 'lamp': faces[1]: 2 vertices, a face has at least 3"),
+        (mesh([4, 2].as_ptr()), ErrorLight, "lights[0] 'lamp': face_vertex_counts[1]: 2 vertices"),
         (
             ArealightLight { face_count: 1, ..mesh(hole) },
             ErrorLight,
-            "lights[0] 'lamp': faces: 3 vertices in all, but the light has 6",
+            "lights[0] 'lamp': face_vertex_counts: 3 vertices in all, but the light has 6",
         ),
         (
             ArealightLight { textured: 1, ..mesh(threes.as_ptr()) },

@@ -1,6 +1,7 @@
 //! What a scene is lit by, and from where it is seen: what commands that read scenes share.
 
 use crate::failure::Failure;
+use crate::memory;
 use crate::output::say_what_is_not_shown;
 use arealight_scene::{Camera, LoadOptions, Scene};
 use std::path::{Path, PathBuf};
@@ -34,11 +35,8 @@ impl LightArguments {
         camera: Option<&str>,
         aspect: f64,
     ) -> Result<(Scene, Camera), Failure> {
-        let options = LoadOptions { light_size: self.light_size };
         let mut scene = match path {
-            Some(path) => {
-                Scene::load_with(path, options).map_err(|error| Failure::Scene(error.to_string()))?
-            }
+            Some(path) => read(path, self.light_size)?,
             None => demo()?,
         };
         let path = scene_name(path);
@@ -52,6 +50,12 @@ impl LightArguments {
         say_what_is_not_shown(&scene, &path);
         Ok((scene, camera))
     }
+}
+
+/// Reads a scene, its points and spots of a radius.
+pub fn read(path: &Path, light_size: Option<f64>) -> Result<Scene, Failure> {
+    let options = LoadOptions { light_size, memory: memory::limit() };
+    Scene::load_with(path, options).map_err(|error| Failure::Scene(error.to_string()))
 }
 
 /// What a scene is called that may be the demo.

@@ -7,6 +7,7 @@ mod failure;
 mod film;
 mod gpu;
 mod lights;
+mod memory;
 mod output;
 mod picture;
 mod plots;
@@ -16,6 +17,7 @@ mod shadows;
 mod verdict;
 mod view;
 mod visible;
+mod whole_file;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
@@ -32,6 +34,10 @@ struct CommandLine {
     /// Say which device and table are used, and print every table of a report.
     #[arg(short, long, global = true, conflicts_with = "quiet")]
     verbose: bool,
+    /// The most memory that what is read may take: bytes, or with K, M or G; without it 256M and 256 bytes for
+    /// each byte of the files.
+    #[arg(long, global = true, value_name = "SIZE", value_parser = memory::parse)]
+    memory: Option<u64>,
     #[command(subcommand)]
     command: Command,
 }
@@ -68,7 +74,8 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let CommandLine { quiet, verbose, command } = CommandLine::parse();
+    let CommandLine { quiet, verbose, memory, command } = CommandLine::parse();
+    memory::be_within(memory);
     if quiet {
         progress::be_quiet();
     }
@@ -93,7 +100,7 @@ fn main() -> ExitCode {
     match result {
         Ok(code) => code,
         Err(failure) => {
-            eprintln!("error: {failure}");
+            output::say(&format!("error: {failure}"));
             failure.exit_code()
         }
     }

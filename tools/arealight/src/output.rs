@@ -2,18 +2,66 @@
 //! not there.
 
 use crate::failure::Failure;
+use crate::whole_file::WholeFile;
 use arealight_scene::{Scene, Warning};
-use std::fs::{File, OpenOptions};
+use std::borrow::Cow;
+use std::fmt::Write as _;
+use std::fs::OpenOptions;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use tempfile::NamedTempFile;
 
-/// Prints `text` to standard output. A reader that has seen enough, such as `head`, is no failure.
+/// The most characters of a word that are shown, unless it may be a path; and of a line.
+const LONGEST: (usize, usize) = (100, 4000);
+
+/// A text as a terminal and a log may have it: names of foreign files turn no colours on, move no cursor and
+/// fill no screen. Control characters, and those that turn the direction of writing, are escaped.
+pub fn shown(text: &str) -> Cow<'_, str> {
+    let is_bad = |c: char| {
+        (c.is_control() && c != '\n' && c != '\t')
+            || matches!(c, '\u{200e}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    if !text.contains(is_bad) {
+        return text.into();
+    }
+    let mut made = String::with_capacity(text.len());
+    for c in text.chars() {
+        let _ = if is_bad(c) { write!(made, "{}", c.escape_default()) } else { write!(made, "{c}") };
+    }
+    made.into()
+}
+
+/// A text of foreign names without what has no end: the beginnings of its words, but of paths, and of its
+/// lines.
+pub fn brief(text: &str) -> String {
+    let cut = |text: &str, most: usize| match text.char_indices().nth(most) {
+        Some((end, _)) => format!("{}... ({} bytes)", &text[..end], text.len()),
+        None => text.to_owned(),
+    };
+    let word = |word: &str| if word.contains('/') { word.to_owned() } else { cut(word, LONGEST.0) };
+    let line = |line: &str| cut(&line.split(' ').map(word).collect::<Vec<_>>().join(" "), LONGEST.1);
+    text.lines().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// Says something [`brief`] to standard error, as [`shown`].
+pub fn say(text: &str) {
+    eprintln!("{}", shown(&brief(text)));
+}
+
+/// Prints `text`, as [`shown`], to standard output.
+///
+/// # Errors
+/// As [`print_styled`].
+pub fn print(text: &str) -> Result<ExitCode, Failure> {
+    print_styled(&shown(text))
+}
+
+/// Prints our own `text` to standard output, with what colours it. A reader that has seen enough, such as
+/// `head`, is no failure.
 ///
 /// # Errors
 /// [`Failure::Output`] if standard output cannot be written for another reason, such as a full disk.
-pub fn print(text: &str) -> Result<ExitCode, Failure> {
+pub fn print_styled(text: &str) -> Result<ExitCode, Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
@@ -29,19 +77,26 @@ pub fn say_what_is_not_shown(scene: &Scene, path: &Path) {
     for (word, said) in [("warning", &scene.warnings), ("note", &scene.notes)] {
         match &Warning::grouped(said)[..] {
             [] => {}
-            [line] => eprintln!("{word}: {}: {line}", path.display()),
-            lines => eprintln!("{word}: {}:\n    {}", path.display(), lines.join("\n    ")),
+            [line] => say(&format!("{word}: {}: {line}", path.display())),
+            lines => say(&format!("{word}: {}:\n    {}", path.display(), lines.join("\n    "))),
         }
     }
 }
 
-/// Sees to it that a file can be written, before long work. What is there stays as it is, and nothing new is
-/// left behind.
+/// Sees to it that a file can be written, before long work, and is none of those that are read. What is there
+/// stays as it is, and nothing new is left behind. A pipe or device is not touched.
 ///
 /// # Errors
-/// [`Failure::Output`] if it cannot.
-pub fn check(path: &Path) -> Result<(), Failure> {
-    Output::open(path).map(drop).map_err(|error| Failure::output(path, error))
+/// [`Failure::Output`] if it cannot be written, [`Failure::Argument`] if it is read.
+pub fn check<'a>(path: &Path, read: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
+    let output = Output::open(path).map_err(|error| Failure::output(path, error))?;
+    let real = |path: &Path| path.canonicalize().ok();
+    let is_this = |other: &Path| real(other).is_some_and(|other| real(path) == Some(other));
+    if matches!(output, Output::File(_)) && read.into_iter().any(is_this) {
+        let message = format!("{} is an input, which it would replace: name another file", path.display());
+        return Err(Failure::Argument { argument: "output", message });
+    }
+    Ok(())
 }
 
 /// What stands for standard input and output among paths.
@@ -59,7 +114,7 @@ pub fn is_stream(path: &Path) -> bool {
 /// As [`print`].
 pub fn say_beside(path: Option<&Path>, text: &str) -> Result<ExitCode, Failure> {
     if path.is_some_and(is_stream) {
-        eprint!("{text}");
+        say(text);
         return Ok(ExitCode::SUCCESS);
     }
     print(text)
@@ -77,10 +132,10 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 /// Where bytes go.
 enum Output {
-    /// A file beside the one that it becomes.
-    Beside(NamedTempFile, PathBuf),
-    /// A device or a pipe, which cannot be replaced.
-    There(File),
+    /// A file that becomes the one at a path.
+    File(WholeFile),
+    /// A device or a pipe, which is not opened before there is something to write: it would end a pipe.
+    There(PathBuf),
     /// Standard output.
     Stream,
 }
@@ -92,42 +147,21 @@ impl Output {
         }
         // A link stays, and what it leads to is replaced
         let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        let there = std::fs::metadata(&path).ok();
-        if there.as_ref().is_some_and(|there| !there.is_file()) {
-            return OpenOptions::new().write(true).open(&path).map(Self::There);
+        match std::fs::metadata(&path) {
+            Ok(there) if there.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+            Ok(there) if !there.is_file() => Ok(Self::There(path)),
+            _ => WholeFile::begin(path).map(Self::File),
         }
-        if there.is_some() {
-            // A file that may not be written is not replaced, although its folder would allow it
-            OpenOptions::new().append(true).open(&path)?;
-        }
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".arealight-").suffix(".new");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // As of any new file, and less what the user's mask takes; or those of the file that is replaced
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        let temporary = builder.tempfile_in(folder)?;
-        if let Some(there) = there {
-            temporary.as_file().set_permissions(there.permissions())?;
-        }
-        Ok(Self::Beside(temporary, path))
     }
 
     fn write(self, bytes: &[u8]) -> io::Result<()> {
         match self {
-            Self::There(mut file) => file.write_all(bytes),
+            Self::File(file) => file.write(bytes),
+            Self::There(path) => OpenOptions::new().write(true).open(path)?.write_all(bytes),
             Self::Stream => {
                 let mut out = io::stdout().lock();
                 out.write_all(bytes)?;
                 out.flush()
-            }
-            Self::Beside(mut temporary, path) => {
-                temporary.write_all(bytes)?;
-                temporary.as_file().sync_all()?;
-                temporary.persist(path).map(drop).map_err(|error| error.error)
             }
         }
     }
@@ -146,20 +180,47 @@ mod tests {
     fn a_file_is_replaced_by_all_of_the_new_one() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("answers.json");
-        check(&path).unwrap();
+        check(&path, None).unwrap();
         assert_eq!(names(folder.path()), [""; 0], "a check leaves nothing");
         write(&path, b"first, which is long").unwrap();
-        check(&path).unwrap();
+        check(&path, None).unwrap();
         write(&path, b"second").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"second");
         assert_eq!(names(folder.path()), ["answers.json"]);
     }
 
     #[test]
+    fn what_is_read_is_not_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let [input, other] = ["in", "other"].map(|name| folder.path().join(name));
+        write(&input, b"precious").unwrap();
+        let again = folder.path().join(".").join("in");
+        let refused = check(&again, [input.as_path()]).unwrap_err();
+        assert!(matches!(refused, Failure::Argument { .. }), "{refused}");
+        check(&other, [input.as_path(), Path::new("-")]).unwrap();
+    }
+
+    #[test]
+    fn keys_and_numbers_without_an_end_are_cut() {
+        let long = "k".repeat(1000);
+        assert_eq!(
+            brief(&format!("a {long}\n/{long}")),
+            format!("a {}... (1000 bytes)\n/{long}", &long[..100])
+        );
+        assert_eq!(brief(&"é ".repeat(3000)).chars().count(), 4000 + "... (9000 bytes)".len());
+    }
+
+    #[test]
+    fn foreign_names_are_shown_and_do_nothing() {
+        let name = "b\u{1b}]0;title\u{7}\u{202e}\r\u{9b}\n\té";
+        assert_eq!(shown(name), "b\\u{1b}]0;title\\u{7}\\u{202e}\\r\\u{9b}\n\té");
+    }
+
+    #[test]
     fn what_cannot_be_written_is_refused_at_once() {
         let folder = tempfile::tempdir().unwrap();
         for path in [folder.path().join("missing/file.png"), folder.path().to_owned()] {
-            for refused in [check(&path), write(&path, b"")] {
+            for refused in [check(&path, None), write(&path, b"")] {
                 assert!(matches!(refused, Err(Failure::Output { .. })), "{}", path.display());
             }
         }

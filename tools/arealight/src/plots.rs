@@ -65,7 +65,7 @@ impl Kind {
 /// # Errors
 /// [`Failure::Output`] if it cannot be written, [`Failure::NoProgram`] where there is no matplotlib.
 pub fn check(path: &Path) -> Result<(), Failure> {
-    output::check(path)?;
+    output::check(path, None)?;
     python().map(drop)
 }
 

@@ -8,8 +8,7 @@ use std::path::PathBuf;
 /// How lights are integrated.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub struct QualityArguments {
-    /// The quality level; docs/cost.md says which to take [default: exact for render, the most precise for
-    /// eval]
+    /// The quality level; docs/cost.md says which to take [default: exact, as the recorder's and the GLSL's]
     #[arg(long, value_name = "LEVEL", value_parser = level_parser())]
     level: Option<Level>,
     /// Within the level: how edges of lights are integrated
@@ -24,7 +23,7 @@ pub struct QualityArguments {
     /// Within the level: where the glossy lobe comes from
     #[arg(long, value_enum, value_name = "WHERE")]
     lobes: Option<Source>,
-    /// How light textures are looked up [default: round for render, split for eval]
+    /// How light textures are looked up [default: round]
     #[arg(long, value_enum, value_name = "HOW")]
     footprint: Option<Lookup>,
     /// A fitted table, of any format that `arealight table` writes; the built-in one if absent
@@ -119,9 +118,9 @@ fn level_parser() -> impl TypedValueParser<Value = Level> {
 }
 
 impl QualityArguments {
-    /// The level chosen, or `default`, with what was chosen within it.
-    pub fn quality_or(&self, default: Quality) -> Quality {
-        let default = self.level.map_or(default, Level::quality);
+    /// The level chosen, or the default, with what was chosen within it.
+    pub fn quality(&self) -> Quality {
+        let default = self.level.unwrap_or_default().quality();
         let form_factor = match self.form_factor {
             None => default.form_factor,
             Some(Edges::Exact) => FormFactor::Exact,
@@ -159,6 +158,26 @@ impl QualityArguments {
     }
 }
 
+/// What a level chooses, by the names of its options.
+pub fn said(quality: Quality) -> serde_json::Value {
+    let Quality { form_factor, horizon, specular_lobes, lobes, footprint } = quality;
+    let specular_lobes = match specular_lobes {
+        SpecularLobes::HalfVectors => "half-vectors".to_owned(),
+        fitted => word(fitted),
+    };
+    serde_json::json!({
+        "form_factor": word(form_factor),
+        "horizon": word(horizon),
+        "specular_lobes": specular_lobes,
+        "lobes": word(lobes),
+        "footprint": word(footprint),
+    })
+}
+
+fn word(choice: impl std::fmt::Debug) -> String {
+    format!("{choice:?}").to_lowercase()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -172,12 +191,12 @@ mod tests {
 
     fn chosen(words: &[&str]) -> Option<Quality> {
         let command = Command::try_parse_from([&["command"], words].concat()).ok()?;
-        Some(command.quality.quality_or(Level::Formula.quality()))
+        Some(command.quality.quality())
     }
 
     #[test]
     fn a_level_is_the_default_of_what_is_chosen_within_it() {
-        assert_eq!(chosen(&[]), Some(Level::Formula.quality()));
+        assert_eq!(chosen(&[]), Some(Quality::default()));
         for level in Level::ALL {
             assert_eq!(chosen(&["--level", &level.name().replace(' ', "-")]), Some(level.quality()));
         }
@@ -185,6 +204,20 @@ mod tests {
         assert_eq!(chosen(&["--level", "finest", "--horizon", "cosine"]), Some(narrower));
         assert_ne!(narrower, Level::Finest.quality());
         assert_eq!(chosen(&["--level", "best"]), None);
+    }
+
+    #[test]
+    fn what_is_said_of_a_level_chooses_it() {
+        for level in Level::ALL.map(Level::quality) {
+            let said = said(level);
+            let words = said.as_object().unwrap().iter();
+            let words: Vec<String> = words
+                .flat_map(|(option, value)| {
+                    [format!("--{}", option.replace('_', "-")), value.as_str().unwrap().to_owned()]
+                })
+                .collect();
+            assert_eq!(chosen(&words.iter().map(String::as_str).collect::<Vec<_>>()), Some(level), "{said}");
+        }
     }
 
     #[test]

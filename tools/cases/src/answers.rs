@@ -32,10 +32,10 @@ impl Answer {
     }
 }
 
-/// The text of a file of answers: `{"results": [...]}`, one a line.
-pub fn write_answers(answers: &[Answer]) -> String {
+/// The text of a file of answers, `{"by": ..., "results": [...]}`, one a line; `by` says what answered.
+pub fn write_answers(answers: &[Answer], by: &Value) -> String {
     let lines: Vec<String> = answers.iter().map(|answer| serde_json::json!(answer).to_string()).collect();
-    format!("{{\"results\": [\n{}\n]}}\n", lines.join(",\n"))
+    format!("{{\"by\": {by}, \"results\": [\n{}\n]}}\n", lines.join(",\n"))
 }
 
 /// Reads a file of answers or of known radiance: `{"results": [...]}`, or the array alone. Fields beside
@@ -88,11 +88,11 @@ mod tests {
             Answer::none("b", "light.type \"disk\" is not supported yet"),
             Answer::new("c", DVec3::new(f64::NAN, 0.0, 0.0)),
         ];
-        let text = write_answers(&answers);
+        let text = write_answers(&answers, &Value::Null);
         assert!(text.contains(r#"{"name":"b","radiance":null,"reason":"light.type \"disk\" is"#), "{text}");
         assert_eq!(read_answers(&text).unwrap(), answers);
         assert_eq!(answers[2].radiance, None);
-        assert_eq!(read_answers(&write_answers(&[])).unwrap(), []);
+        assert_eq!(read_answers(&write_answers(&[], &Value::Null)).unwrap(), []);
     }
 
     #[test]

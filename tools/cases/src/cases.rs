@@ -7,6 +7,7 @@
 mod coat;
 mod fields;
 mod material;
+mod strict;
 
 use arealight::{Light, LightFault, LightShape, LightTexture, TextureMap, TubeEnds};
 use arealight_oracle::material::Surface;
@@ -69,7 +70,7 @@ pub struct Case {
     pub light: CaseLight,
     /// Triangles in the world that block light from both sides and reflect nothing.
     pub blockers: Vec<Blocker>,
-    /// Fields of the file that the format does not know.
+    /// Fields of the file that the format does not know, in words: what each is, and is like.
     pub unknown_fields: Vec<String>,
 }
 
@@ -399,7 +400,7 @@ impl Case {
 
     fn check_fields(&self) -> Result<(), Unsupported> {
         match self.unknown_fields.first() {
-            Some(field) => Err(Unsupported { reason: format!("the field \"{field}\" is not known") }),
+            Some(field) => Err(Unsupported { reason: format!("the field {field}") }),
             None => Ok(()),
         }
     }

@@ -8,6 +8,9 @@ use gltf::json::accessor::{ComponentType, Type};
 /// The most elements an accessor may have: the corners of as many triangles as a scene may have.
 pub(crate) const MAX_ELEMENTS: u64 = 3 * MAX_TRIANGLES as u64;
 
+/// What is made of an accessor's bytes takes so many times as much: the bytes, numbers, and those in the world.
+const COPIES: u64 = 4;
+
 /// An accessor's elements, tightly packed.
 struct Elements {
     bytes: Vec<u8>,
@@ -90,6 +93,7 @@ fn elements(document: &Document, index: usize, field: &str, expected: Type) -> R
         return Err(document.too_large(format!("accessors[{index}].count"), count, MAX_ELEMENTS));
     }
     let size = component.0.size() * shape.multiplicity();
+    document.take(format!("accessors[{index}]"), COPIES * count * size as u64)?;
     // Copy what the buffer view holds, or start from zeros
     let mut bytes = match accessor.buffer_view {
         Some(view) => {
@@ -114,8 +118,13 @@ fn elements(document: &Document, index: usize, field: &str, expected: Type) -> R
         let places =
             view(sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0, width, "indices")?;
         let values = view(sparse.values.buffer_view.value(), sparse.values.byte_offset.0, size, "values")?;
+        let mut least = 0;
         for (place, value) in places.chunks_exact(width).zip(values.chunks_exact(size)) {
             let place = place.iter().rev().fold(0_usize, |sum, byte| sum << 8 | usize::from(*byte));
+            if place < least {
+                return Err(document.invalid(field, format!("index {place} is not above the one before it")));
+            }
+            least = place + 1;
             let target = bytes.get_mut(place * size..(place + 1) * size);
             let target =
                 target.ok_or_else(|| document.invalid(&field, format!("index {place} of {count}")))?;

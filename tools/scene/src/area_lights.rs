@@ -9,7 +9,7 @@ use crate::nodes::PlacedNode;
 use arealight::{Light, LightShape};
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// Luminous efficacy of 555 nm light, lm/W: `EXT_lights_area` gives luminance in cd/m², and radiance is that
 /// divided by this. A light of 683 nits has a radiance of 1.
@@ -30,6 +30,11 @@ struct AreaLight {
     rect: Rectangle,
     #[serde(default)]
     extras: Value,
+    #[serde(default, rename = "extensions")]
+    _extensions: Value,
+    /// What the extension does not have, such as fields of its drafts.
+    #[serde(flatten)]
+    others: Map<String, Value>,
 }
 
 #[derive(Deserialize, Clone)]
@@ -77,6 +82,10 @@ pub(crate) fn lights(
             other => Err(format!("type '{other}' is not known")),
         };
         let radiance = radiance(light);
+        for field in light.others.keys() {
+            let text = format!("{field} is no field of {AREA_LIGHTS}: left out");
+            messages.warn(format!("light '{name}'"), text);
+        }
         let made = shape.and_then(|shape| {
             let light = Light { name: name.clone(), radiance, shape, ..Light::default() };
             light.validate().map(|()| light).map_err(|fault| fault.to_string())

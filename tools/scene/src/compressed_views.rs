@@ -11,9 +11,6 @@ use meshopt::{
 };
 use serde::Deserialize;
 
-/// What a file's views may be together, in bytes.
-const MOST_BYTES: u64 = 1 << 31;
-
 /// The most bytes that one becomes: of vertices that are all alike, a block of 256 takes a byte for each word
 /// of a vertex.
 const MOST_PER_BYTE: u64 = 1024;
@@ -54,7 +51,6 @@ enum Filter {
 
 /// Decodes the views of buffers without data.
 pub(crate) fn decompress(document: &mut Document) -> Result<(), SceneError> {
-    let mut budget = MOST_BYTES;
     for index in 0..document.root.buffer_views.len() {
         let view = &document.root.buffer_views[index];
         let extension = view.extensions.as_ref().and_then(|others| extensions::meshopt(&others.others));
@@ -71,7 +67,7 @@ pub(crate) fn decompress(document: &mut Document) -> Result<(), SceneError> {
             let problem = format!("is of {size} bytes, which {} bytes cannot become", said.byte_length);
             return Err(document.invalid(field, problem));
         }
-        budget = budget.checked_sub(size).ok_or_else(|| document.too_large(&field, size, MOST_BYTES))?;
+        document.take(&field, size)?;
         let bytes = document.bytes(|| field.clone(), said.buffer, said.byte_offset, said.byte_length)?;
         let decoded = said.decode(bytes).map_err(|problem| document.invalid(field, problem))?;
         document.fill(index, decoded);

@@ -1,7 +1,10 @@
 //! The file as glTF has it: container, JSON, buffers. Nothing here trusts the file.
 
+use crate::budget::Budget;
 use crate::error::SceneError;
 use crate::extensions;
+use crate::indices;
+use crate::transforms::Place;
 use gltf::json;
 use std::path::{Component, Path, PathBuf};
 
@@ -14,30 +17,42 @@ pub(crate) struct Document {
     pub file: String,
     /// The JSON.
     pub root: json::Root,
+    /// Where each of the root's nodes is.
+    pub places: Vec<Place>,
     /// One for each of the root's buffers, as long as the buffer says.
     buffers: Vec<Vec<u8>>,
     /// Where relative URIs start; none for a scene from memory.
     folder: Option<PathBuf>,
+    /// What the scene may take.
+    pub budget: Budget,
 }
 
 impl Document {
     /// Reads the document at `path` and its buffers.
-    pub fn open(path: &Path) -> Result<Self, SceneError> {
+    pub fn open(path: &Path, memory: Option<u64>) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         let bytes = read_file(path).map_err(|source| SceneError::Read { file: file.clone(), source })?;
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
-        Self::parse(&bytes, file, Some(folder))
+        Self::parse(&bytes, file, Some(folder), memory)
     }
 
     /// Reads the document in `bytes`, and its buffers from `folder`.
-    pub fn parse(bytes: &[u8], file: String, folder: Option<PathBuf>) -> Result<Self, SceneError> {
+    pub fn parse(
+        bytes: &[u8],
+        file: String,
+        folder: Option<PathBuf>,
+        memory: Option<u64>,
+    ) -> Result<Self, SceneError> {
         // Split the container
         let (text, blob) =
             split(bytes).map_err(|reason| SceneError::NotGltf { file: file.clone(), reason })?;
         // Parse and check the JSON
-        let root = parse_root(text)
+        let (root, Places { nodes: places }) = indices::check(text)
+            .and_then(|()| Ok((parse_root(text)?, serde_json::from_slice(text)?)))
             .map_err(|e| SceneError::NotGltf { file: file.clone(), reason: e.to_string() })?;
-        let mut document = Self { file, root, buffers: Vec::new(), folder };
+        let budget = Budget::new(memory);
+        budget.read(bytes.len());
+        let mut document = Self { file, root, places, buffers: Vec::new(), folder, budget };
         document.check_version_and_extensions()?;
         document.check_fields()?;
         // Read the buffers
@@ -96,6 +111,15 @@ impl Document {
     /// An error about a count.
     pub fn too_large(&self, what: impl Into<String>, count: u64, limit: u64) -> SceneError {
         SceneError::TooLarge { file: self.file.clone(), what: what.into(), count, limit }
+    }
+
+    /// Takes bytes of memory for what `field` names, before they are reserved.
+    pub fn take(&self, field: impl Into<String>, bytes: u64) -> Result<(), SceneError> {
+        if self.budget.take(bytes) {
+            return Ok(());
+        }
+        let (file, limit) = (self.file.clone(), self.budget.limit());
+        Err(SceneError::TooMuch { file, field: field.into(), bytes, limit })
     }
 
     /// The bytes of a buffer view.
@@ -161,7 +185,9 @@ impl Document {
         if !path.starts_with(real(folder)?) {
             return Err(failed("a link leads outside of the scene's folder".into()));
         }
-        read_file(&path).map_err(|e| failed(e.to_string()))
+        let bytes = read_file(&path).map_err(|e| failed(e.to_string()))?;
+        self.budget.read(bytes.len());
+        Ok(bytes)
     }
 
     fn check_version_and_extensions(&mut self) -> Result<(), SceneError> {
@@ -227,6 +253,13 @@ impl Document {
         bytes.truncate(expected as usize);
         Ok(bytes)
     }
+}
+
+/// Those of a JSON's nodes.
+#[derive(serde::Deserialize)]
+struct Places {
+    #[serde(default)]
+    nodes: Vec<Place>,
 }
 
 /// The JSON's root. A scene may be without `nodes`, which the gltf crate insists on.

@@ -16,12 +16,11 @@ use serde_json::json;
 struct Budget {
     points: u64,
     faces: u64,
-    bytes: u64,
 }
 
 /// Decodes what no accessor holds plainly.
 pub(crate) fn decompress(document: &mut Document) -> Result<(), SceneError> {
-    let mut budget = Budget { points: accessor::MAX_ELEMENTS, faces: MAX_TRIANGLES as u64, bytes: 1 << 31 };
+    let mut budget = Budget { points: accessor::MAX_ELEMENTS, faces: MAX_TRIANGLES as u64 };
     for m in 0..document.root.meshes.len() {
         for p in 0..document.root.meshes[m].primitives.len() {
             let field = format!("meshes[{m}].primitives[{p}]");
@@ -88,14 +87,14 @@ fn decode(document: &Document, view: usize, field: &str, budget: &mut Budget) ->
     let limits = DecodeLimits::default()
         .with_max_points(budget.points)
         .with_max_faces(budget.faces)
-        .with_max_decoded_bytes(budget.bytes);
+        .with_max_decoded_bytes(document.budget.left());
     let mut mesh = Mesh::new();
     let decoded = MeshDecoder::new().decode(&mut DecoderBuffer::new(bytes).with_limits(limits), &mut mesh);
     decoded.map_err(|error| document.invalid(field, format!("cannot be decoded: {error}")))?;
     budget.points -= (mesh.num_points() as u64).min(budget.points);
     budget.faces -= (mesh.num_faces() as u64).min(budget.faces);
     let size: usize = (0..mesh.num_attributes()).map(|id| mesh.attribute(id).buffer().data().len()).sum();
-    budget.bytes -= (size as u64).min(budget.bytes);
+    document.take(field, size as u64)?;
     Ok(mesh)
 }
 

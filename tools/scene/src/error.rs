@@ -103,6 +103,20 @@ pub enum SceneError {
         /// The node's index.
         node: usize,
     },
+    /// More memory than the file may take.
+    #[error(
+        "{file}: {field}: takes {bytes} bytes of memory, more than is left of {limit}; --memory allows others"
+    )]
+    TooMuch {
+        /// The scene file.
+        file: String,
+        /// What asks for it, as a path through the JSON.
+        field: String,
+        /// How much.
+        bytes: u64,
+        /// How much the whole file may take.
+        limit: u64,
+    },
     /// More data than a scene may have.
     #[error("{file}: {what}: {count}, at most {limit} are supported")]
     TooLarge {

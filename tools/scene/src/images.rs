@@ -107,7 +107,7 @@ fn decode(document: &Document, index: usize, others: u64) -> Result<Image, Scene
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(MAX_SIDE);
     limits.max_image_height = Some(MAX_SIDE);
-    limits.max_alloc = Some(MAX_TEXELS * 8);
+    limits.max_alloc = Some(document.budget.left());
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(failed)?;
     // Refuse more than a scene may have by what the header says, before memory is taken
@@ -116,7 +116,11 @@ fn decode(document: &Document, index: usize, others: u64) -> Result<Image, Scene
     if total > MAX_TEXELS {
         return Err(document.too_large("texels of all images", total, MAX_TEXELS));
     }
+    // Twice while it is decoded
+    let size = 4 * (total - others);
+    document.take(&field, 2 * size)?;
     let pixels = DynamicImage::from_decoder(decoder).map_err(failed)?.into_rgba8();
+    document.budget.give(size);
     Ok(Image {
         name: entry.name.clone().unwrap_or(field),
         width: pixels.width(),

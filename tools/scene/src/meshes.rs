@@ -45,6 +45,9 @@ pub(crate) fn place<'a>(
         if total > MAX_TRIANGLES {
             return Err(document.too_large("triangles", total as u64, MAX_TRIANGLES as u64));
         }
+        // A list that grows has room for twice what is in it
+        let size = 2 * size_of::<Triangle>() * primitive.triangles.len();
+        document.take(format!("{}: its triangles", primitive.field), size as u64)?;
         let material = materials.index(primitive.material);
         warn_of_missing(primitive, &materials.list[material as usize], messages);
         let moves = moves(document, (node, pose), primitive, messages)?;

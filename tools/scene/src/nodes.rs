@@ -53,7 +53,7 @@ pub(crate) fn place(document: &Document, messages: &mut Messages) -> Result<Vec<
             return Err(SceneError::NodeTwice { file: document.file.clone(), node: index });
         }
         // Combine its own transform with its parent's
-        let local = transforms::of_node(node).map_err(|p| document.invalid(field(), p))?;
+        let local = transforms::of_node(&document.places[index]).map_err(|p| document.invalid(field(), p))?;
         let world = parent * local;
         let columns = world.to_cols_array();
         if columns.iter().any(|x| x.is_nan() || x.abs() > MAX_COORDINATE) {

@@ -11,14 +11,24 @@ use gltf::json;
 /// The most nodes and instances a scene may have, where it has instances; a file beyond is refused.
 const MAX_INSTANCES: usize = 1 << 20;
 
+/// Where a node is in its parent's space, in all digits of the file: the gltf crate has float32, too few for
+/// what is far from the origin.
+#[derive(Debug, Default, serde::Deserialize)]
+pub(crate) struct Place {
+    matrix: Option<[f64; 16]>,
+    translation: Option<[f64; 3]>,
+    rotation: Option<[f64; 4]>,
+    scale: Option<[f64; 3]>,
+}
+
 /// From a node's space to its parent's, or what is wrong with it.
-pub(crate) fn of_node(node: &json::Node) -> Result<DAffine3, String> {
-    if let Some(matrix) = node.matrix {
-        return Ok(DAffine3::from_mat4(DMat4::from_cols_array(&matrix.map(f64::from))));
+pub(crate) fn of_node(place: &Place) -> Result<DAffine3, String> {
+    if let Some(matrix) = &place.matrix {
+        return Ok(DAffine3::from_mat4(DMat4::from_cols_array(matrix)));
     }
-    let scale = node.scale.map_or(DVec3::ONE, |s| DVec3::from_array(s.map(f64::from)));
-    let translation = node.translation.map_or(DVec3::ZERO, |t| DVec3::from_array(t.map(f64::from)));
-    let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
+    let scale = place.scale.map_or(DVec3::ONE, DVec3::from_array);
+    let translation = place.translation.map_or(DVec3::ZERO, DVec3::from_array);
+    let rotation = place.rotation.map_or(DQuat::IDENTITY, DQuat::from_array);
     let length = rotation.length();
     if !(length > 1e-6 && length.is_finite()) {
         return Err(format!("rotation: {:?} is not a quaternion of unit length", rotation.to_array()));
@@ -54,11 +64,11 @@ pub(crate) fn of_instances(
         return Err(document.too_large("instances", (placed + count) as u64, MAX_INSTANCES as u64));
     }
     let instance = |i: usize| {
-        let local = of_node(&json::Node {
-            translation: translations.as_ref().map(|values| values[i]),
-            rotation: rotations.as_ref().map(|values| json::scene::UnitQuaternion(values[i])),
-            scale: scales.as_ref().map(|values| values[i]),
-            ..json::Node::default()
+        let local = of_node(&Place {
+            matrix: None,
+            translation: translations.as_ref().map(|values| values[i].map(f64::from)),
+            rotation: rotations.as_ref().map(|values| values[i].map(f64::from)),
+            scale: scales.as_ref().map(|values| values[i].map(f64::from)),
         });
         local.map_err(|problem| document.invalid(field(&format!("[{i}]")), problem))
     };

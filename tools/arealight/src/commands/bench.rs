@@ -13,7 +13,7 @@ mod stability;
 mod textures;
 
 use crate::failure::Failure;
-use crate::output::{self, print};
+use crate::output::{self, print, print_styled, shown};
 use crate::{gpu, verdict};
 use arealight_benches::sections::{Markers, replace_section};
 use arealight_engine::Host;
@@ -84,7 +84,11 @@ struct Ends {
 impl Ends {
     /// The device, when it is known that every file can be written.
     fn host(&self) -> Result<Host, Failure> {
-        self.save.as_deref().into_iter().chain(self.markdown.as_deref()).try_for_each(output::check)?;
+        self.save
+            .as_deref()
+            .into_iter()
+            .chain(self.markdown.as_deref())
+            .try_for_each(|path| output::check(path, None))?;
         gpu::host(self.device.device.as_deref())
     }
 
@@ -99,7 +103,7 @@ impl Ends {
         if let Some(path) = &self.save {
             write(path, &json())?;
         }
-        if self.json { print(&json()) } else { print(&verdict::for_stdout(text)) }.map(drop)
+        if self.json { print(&json()) } else { print_styled(&verdict::for_stdout(&shown(text))) }.map(drop)
     }
 }
 

@@ -3,8 +3,9 @@
 use crate::canvas::Canvas;
 use crate::differences::diverging;
 use crate::failure::Failure;
+use crate::memory;
 use crate::output::{self, print};
-use arealight_cases::images::load_image;
+use arealight_cases::images::Images;
 use arealight_oracle::texture::Texture;
 use glam::DVec3;
 use serde_json::json;
@@ -83,12 +84,13 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             let message = format!("{}: the file's name must end in .png", path.display());
             return Err(Failure::Argument { argument: "--output", message });
         }
-        output::check(path)?;
+        output::check(path, [judged.as_path(), truth.as_path()])?;
     }
     if !(scale.is_finite() && *scale > 0.0) {
         return Err(Failure::Argument { argument: "--scale", message: format!("{scale} is not above 0") });
     }
-    let read = |path: &Path| load_image(path).map_err(|error| Failure::input(path, error));
+    let mut images = Images::beside(Path::new(""), memory::most_of);
+    let mut read = |path: &Path| images.read(path).map_err(|error| Failure::input(path, error));
     let (a, b) = (read(judged)?, read(truth)?);
     let sizes = [&a, &b].map(|picture| [picture.width(), picture.height()]);
     if sizes[0] != sizes[1] {

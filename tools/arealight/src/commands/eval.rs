@@ -2,9 +2,8 @@
 
 use crate::failure::Failure;
 use crate::output::{self, print, say_beside};
-use crate::quality::QualityArguments;
-use crate::{gpu, progress, visible};
-use arealight::{Footprint, FormFactor, Quality, SpecularLobes};
+use crate::quality::{self, QualityArguments};
+use crate::{gpu, memory, progress, visible};
 use arealight_cases::answers::{Answer, read_answers, write_answers};
 use arealight_cases::cases::{Case, CaseError, CaseShape, ShapeCase, SupportedCase, read_cases};
 use arealight_cases::images::Images;
@@ -17,7 +16,7 @@ use arealight_oracle::texture::Texture;
 use glam::DVec3;
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -64,6 +63,16 @@ enum Method {
     Truth,
 }
 
+impl Method {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Gpu => "gpu",
+            Self::Oracle => "oracle",
+            Self::Truth => "truth",
+        }
+    }
+}
+
 /// Reads the value of `--tolerance`.
 pub fn tolerance(text: &str) -> Result<f64, String> {
     let value: Option<f64> = text.parse().ok();
@@ -89,7 +98,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     };
 
     if let Some(path) = &arguments.output {
-        output::check(path)?;
+        let read = arguments.against.as_deref().into_iter().chain([arguments.cases.as_path()]);
+        output::check(path, read)?;
     }
 
     let start = Instant::now();
@@ -97,7 +107,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let seconds = start.elapsed().as_secs_f64();
 
     // Write before measuring, so that no answer is lost
-    let text = write_answers(&answers);
+    let level = (arguments.on != Method::Truth).then(|| quality::said(arguments.quality.quality()));
+    let text = write_answers(&answers, &by(arguments.on, level.as_ref()));
     match &arguments.output {
         Some(path) => {
             output::write(path, text.as_bytes())?;
@@ -114,16 +125,17 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         }
         None => None,
     };
-    let summary = Summary { method: arguments.on, answers: &answers, seconds, measures: measures.as_deref() };
+    let measures = measures.as_deref();
+    let summary = Summary { method: arguments.on, level, answers: &answers, seconds, measures };
     say_beside(
         arguments.output.as_deref(),
         &if arguments.json { summary.to_json() } else { summary.to_text() },
     )?;
 
     // Compare
-    match arguments.tolerance.and_then(|tolerance| complaint(measures.as_deref()?, tolerance)) {
+    match arguments.tolerance.and_then(|tolerance| complaint(measures?, tolerance)) {
         Some(complaint) => {
-            eprintln!("error: {complaint}");
+            output::say(&format!("error: {complaint}"));
             Ok(ExitCode::from(1))
         }
         None => Ok(ExitCode::SUCCESS),
@@ -131,13 +143,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 }
 
 fn read<T>(path: &Path, parse: impl Fn(&str) -> Result<T, CaseError>) -> Result<T, Failure> {
-    let text = if output::is_stream(path) {
-        std::io::read_to_string(std::io::stdin())
-    } else {
-        std::fs::read_to_string(path)
-    };
-    let text = text.map_err(|error| Failure::input(path, error))?;
-    parse(&text).map_err(|error| Failure::input(path, error))
+    parse(&memory::read_text(path)?).map_err(|error| Failure::input(path, error))
 }
 
 /// Checks that `known` holds the radiance of every case that can be answered.
@@ -200,7 +206,7 @@ fn supported(
 /// One answer a case, in their order: the radiance, or why there is none.
 fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Failure> {
     // Set aside what is not supported
-    let mut images = Images::beside(&arguments.cases);
+    let mut images = Images::beside(&arguments.cases, memory::most_of);
     let sorted: Vec<Result<Supported, String>> =
         cases.iter().map(|case| supported(case, |path| images.load(path))).collect();
     let known = || sorted.iter().flatten();
@@ -210,14 +216,7 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     let counts: Vec<usize> = parts.iter().map(Vec::len).collect();
     let polygons: Vec<SupportedCase> = parts.into_iter().flatten().collect();
     let shapes: Vec<ShapeCase> = known().filter_map(Supported::shape).cloned().collect();
-    // The most precise levels, unless others are to be seen
-    let precise = Quality {
-        form_factor: FormFactor::Difference,
-        specular_lobes: SpecularLobes::Two,
-        footprint: Footprint::Split,
-        ..Quality::default()
-    };
-    let quality = arguments.quality.quality_or(precise);
+    let quality = arguments.quality.quality();
     let (of_polygons, of_shapes) = match arguments.on {
         Method::Gpu => {
             let table = arguments.quality.table()?;
@@ -302,9 +301,15 @@ fn answer_in_parallel<T: Sync>(cases: &[T], answer: impl Fn(&T) -> Answer + Send
     answers
 }
 
+/// What answered, as files of answers and summaries say it: a port is compared at its own level.
+fn by(method: Method, level: Option<&Value>) -> Value {
+    json!({ "on": method.name(), "level": level })
+}
+
 /// What there is to say of a run.
 struct Summary<'a> {
     method: Method,
+    level: Option<Value>,
     answers: &'a [Answer],
     seconds: f64,
     measures: Option<&'a [Measure]>,
@@ -315,17 +320,10 @@ impl Summary<'_> {
         self.answers.iter().filter(|answer| answer.radiance.is_none()).count()
     }
 
-    fn method(&self) -> &'static str {
-        match self.method {
-            Method::Gpu => "gpu",
-            Method::Oracle => "oracle",
-            Method::Truth => "truth",
-        }
-    }
-
     fn to_json(&self) -> String {
         let summary = json!({
-            "on": self.method(),
+            "on": self.method.name(),
+            "level": self.level,
             "cases": self.answers.len(),
             "unanswered": self.unanswered(),
             "seconds": self.seconds,
@@ -337,8 +335,8 @@ impl Summary<'_> {
     fn to_text(&self) -> String {
         let mut text = self.measures.map(table).unwrap_or_default();
         let (count, seconds, unanswered) = (self.answers.len(), self.seconds, self.unanswered());
-        let _ =
-            writeln!(text, "{count} cases on {} in {seconds:.2} s, {unanswered} unanswered", self.method());
+        let name = self.method.name();
+        let _ = writeln!(text, "{count} cases on {name} in {seconds:.2} s, {unanswered} unanswered");
         // Each reason once
         let mut reasons: Vec<(&str, usize)> = Vec::new();
         for reason in self.answers.iter().filter_map(|answer| answer.reason.as_deref()) {
@@ -348,7 +346,7 @@ impl Summary<'_> {
             }
         }
         for (reason, count) in reasons {
-            let _ = writeln!(text, "{count:>6}: {reason}");
+            let _ = writeln!(text, "{count:>6}: {}", output::brief(reason));
         }
         text
     }
@@ -434,9 +432,10 @@ polygon, anisotropic ggx      7          7
     fn each_reason_is_given_once() {
         let answers =
             [Answer::none("a", "no disks"), Answer::none("b", "no disks"), Answer::new("c", DVec3::ONE)];
-        let summary = Summary { method: Method::Truth, answers: &answers, seconds: 0.25, measures: None };
+        let (method, level, seconds, measures) = (Method::Truth, None, 0.25, None);
+        let summary = Summary { method, level, answers: &answers, seconds, measures };
         assert_eq!(summary.to_text(), "3 cases on truth in 0.25 s, 2 unanswered\n     2: no disks\n");
-        let value: serde_json::Value = serde_json::from_str(&summary.to_json()).unwrap();
+        let value: Value = serde_json::from_str(&summary.to_json()).unwrap();
         assert_eq!((&value["on"], &value["unanswered"]), (&json!("truth"), &json!(2)));
     }
 }

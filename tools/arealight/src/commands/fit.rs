@@ -50,7 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             .map_err(|error| Failure::Argument { argument: "--output", message: error.to_string() })
     };
     let output = arguments.output.as_deref().map(|path| Ok((path, format(path)?))).transpose()?;
-    output.map_or(Ok(()), |(path, _)| output::check(path))?;
+    output.map_or(Ok(()), |(path, _)| output::check(path, None))?;
     // Fit
     let aim = if arguments.matrices == 1 { Aim::one_for_all() } else { Aim::ByF0 };
     let settings = Settings { size: arguments.size, aim, pairs: !arguments.no_pairs };

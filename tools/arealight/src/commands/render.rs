@@ -10,7 +10,7 @@ use crate::output::{self, say_beside};
 use crate::picture::{Exposure, Picture};
 use crate::quality::QualityArguments;
 use crate::shadows::Shadows;
-use arealight::{Effects, Quality};
+use arealight::Effects;
 use arealight_scene::{Camera, Scene};
 use serde_json::json;
 use shading::{Outcome, render};
@@ -144,7 +144,7 @@ impl SurfaceChoice {
         let Self::Stated(surfaces) = self else { return required };
         for effect in arealight_scene::required_effects(scene) {
             if (required - surfaces).contains(effect.effect) {
-                eprintln!("warning: {}: --surfaces is without {effect}", path.display());
+                output::say(&format!("warning: {}: --surfaces is without {effect}", path.display()));
             }
         }
         surfaces
@@ -191,7 +191,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if arguments.output.is_none() {
         std::fs::create_dir_all(FOLDER).map_err(|error| Failure::output(FOLDER, error))?;
     }
-    output::check(&output)?;
+    output::check(&output, arguments.scene.as_deref())?;
     let samples = arguments.size.map(|side| side * arguments.supersample);
 
     // Render, save, and say so
@@ -201,7 +201,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         .time("light textures", || engine.load_scene_textures(&scene, TEXTURE_SIZE))
         .map_err(|error| gpu::failure(error, &path))?;
     let surfaces = arguments.surfaces.surfaces(&scene, &path);
-    let quality = arguments.quality.quality_or(Quality::default());
+    let quality = arguments.quality.quality();
     let outcome = phases
         .time("picture", || render(&engine, &scene, &camera, samples, (surfaces, quality), arguments))
         .map_err(|error| gpu::failure(error, &path))?;

@@ -84,7 +84,8 @@ impl Convert {
         let target = Target::of_path(&self.output, precision)
             .map_err(|error| Failure::Argument { argument: "OUT", message: error.to_string() })?;
 
-        output::check(&self.output)?;
+        let read = self.magnitude.as_deref().into_iter().chain([self.input.as_path()]);
+        output::check(&self.output, read)?;
 
         // Read, and bring to size
         let (mut file, adjusted) = self.read()?;

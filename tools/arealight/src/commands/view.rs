@@ -77,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // A place for a recording, before anything takes long
     if let Some(folder) = &arguments.record {
         std::fs::create_dir_all(folder).map_err(|error| Failure::output(folder, error))?;
-        output::check(&folder.join(FILM))?;
+        output::check(&folder.join(FILM), None)?;
     }
 
     // Draw

@@ -12,6 +12,12 @@ fn eval(arguments: &[&str]) -> Output {
         .expect("the command runs")
 }
 
+/// As [`eval`], at the most precise level, but for specular lobes that are said.
+fn precisely(arguments: &[&str]) -> Output {
+    let lobes = if arguments.contains(&"--specular-lobes") { &[][..] } else { &["--specular-lobes", "two"] };
+    eval(&[arguments, lobes, &["--form-factor", "difference", "--footprint", "split"]].concat())
+}
+
 fn reference(file: &str) -> String {
     format!("{}/../../tests/data/reference/{file}", env!("CARGO_MANIFEST_DIR"))
 }
@@ -63,7 +69,7 @@ fn each_method_meets_its_measure() {
         let out = temporary(&format!("{method}.json"));
         let arguments =
             ["--on", method, "--against", &reference("truth.json"), "--json", "-o", out.to_str().unwrap()];
-        let output = eval(&[&[reference("cases.json").as_str()], &arguments[..]].concat());
+        let output = precisely(&[&[reference("cases.json").as_str()], &arguments[..]].concat());
         assert!(output.status.success(), "{}", text(&output.stderr));
         let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
         let measure = |material: &str| {
@@ -77,7 +83,8 @@ fn each_method_meets_its_measure() {
         assert!(measure("diffuse") <= diffuse, "{method}: {summary:#}");
         assert!(measure("ggx") <= glossy, "{method}: {summary:#}");
         // What was written is what was measured: against itself it has no error
-        let again = eval(&[&reference("cases.json"), "--on", method, "--against", out.to_str().unwrap()]);
+        let again =
+            precisely(&[&reference("cases.json"), "--on", method, "--against", out.to_str().unwrap()]);
         let table = text(&again.stdout);
         let line = table.lines().find(|line| line.starts_with("polygon, ggx ")).unwrap();
         assert!(line.contains("50          0     0.0000     0.0000     0.0000     0.0000"), "{table}");
@@ -105,8 +112,17 @@ fn what_is_visible_of_lights_behind_triangles_shines() {
         let measures = |cases: &str| -> Vec<f64> {
             let truth = reference("shadows-truth.json");
             let output = match method {
-                "truth" => eval(&[cases, "--on", method, "--against", &truth, "--json"]),
-                _ => eval(&[cases, "--on", method, "--specular-lobes", lobes, "--against", &truth, "--json"]),
+                "truth" => precisely(&[cases, "--on", method, "--against", &truth, "--json"]),
+                _ => precisely(&[
+                    cases,
+                    "--on",
+                    method,
+                    "--specular-lobes",
+                    lobes,
+                    "--against",
+                    &truth,
+                    "--json",
+                ]),
             };
             assert!(output.status.success(), "{}", text(&output.stderr));
             let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -133,7 +149,7 @@ fn anisotropic_surfaces_are_answered_by_every_method() {
     let device = device();
     let measure = |method: &str, cases: &str| -> f64 {
         let truth = reference("anisotropy-truth.json");
-        let output = eval(&[cases, "--on", method, "--against", &truth, "--json"]);
+        let output = precisely(&[cases, "--on", method, "--against", &truth, "--json"]);
         assert!(output.status.success(), "{method}: {}", text(&output.stderr));
         let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
         let family = &summary["families"][0];
@@ -171,7 +187,8 @@ fn layered_materials_are_answered_by_every_method() {
         }
         let truth = reference("materials-truth.json");
         let arguments = ["--on", method, "--against", &truth, "--json", "--tolerance"];
-        let output = eval(&[&[reference("materials.json").as_str()], &arguments[..], &[tolerance]].concat());
+        let output =
+            precisely(&[&[reference("materials.json").as_str()], &arguments[..], &[tolerance]].concat());
         assert!(output.status.success(), "{method}: {}", text(&output.stderr));
         let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
         // Twice what another design gives there
@@ -196,8 +213,15 @@ fn layered_materials_are_answered_by_every_method() {
     }
     // The twin: the fitted lobe is not the truth
     let truth = reference("materials-truth.json");
-    let output =
-        eval(&[&reference("materials.json"), "--on", "oracle", "--against", &truth, "--tolerance", "1e-3"]);
+    let output = precisely(&[
+        &reference("materials.json"),
+        "--on",
+        "oracle",
+        "--against",
+        &truth,
+        "--tolerance",
+        "1e-3",
+    ]);
     assert_eq!(output.status.code(), Some(1));
 }
 
@@ -240,7 +264,7 @@ fn thin_films_are_answered_by_every_method() {
     let output = eval(&[&cases, "--on", "truth", "-o", &truth]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let mean_error = |cases: &str, method: &str| {
-        let output = eval(&[cases, "--on", method, "--against", &truth, "--json"]);
+        let output = precisely(&[cases, "--on", method, "--against", &truth, "--json"]);
         let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
         let families = summary["families"].as_array().unwrap().iter();
         let number = |family: &Value, field: &str| family[field].as_f64().unwrap();
@@ -323,7 +347,7 @@ fn truth_that_lacks_a_case_is_found_before_anything_is_answered() {
 fn a_tolerance_is_a_gate() {
     let (cases, truth) = (reference("cases.json"), reference("truth.json"));
     let gate = |method: &str, tolerance: &str| {
-        eval(&[&cases, "--on", method, "--against", &truth, "--tolerance", tolerance])
+        precisely(&[&cases, "--on", method, "--against", &truth, "--tolerance", tolerance])
     };
     // The cubature agrees with the known radiance of the same integral; a fitted lobe does not
     let passed = gate("truth", "1e-3");
@@ -340,7 +364,7 @@ fn the_gpu_meets_its_measure() {
     if !device() {
         return;
     }
-    let output = eval(&[&reference("cases.json"), "--against", &reference("truth.json"), "--json"]);
+    let output = precisely(&[&reference("cases.json"), "--against", &reference("truth.json"), "--json"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
     let measure = |material: &str, measure: &str| {

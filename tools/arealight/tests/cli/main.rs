@@ -7,6 +7,7 @@ mod compile_budget;
 mod compiled;
 mod eval;
 mod export;
+mod hostile;
 mod outputs;
 mod pictures;
 mod studio;

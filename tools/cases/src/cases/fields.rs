@@ -1,14 +1,15 @@
 //! Fields of a JSON object, read one by one, so that every error names its case and field.
 
 use super::CaseError;
+use super::strict::Strict;
 use glam::{DVec2, DVec3};
 use serde_json::{Map, Value};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-/// Parses JSON.
+/// Parses JSON, in which no key may be there twice.
 pub fn json(text: &str) -> Result<Value, CaseError> {
-    serde_json::from_str(text).map_err(|error| {
+    serde_json::from_str(text).map(|Strict(value)| value).map_err(|error| {
         // The likeliest wrong token is a number that JSON does not have
         let line = text.lines().nth(error.line().saturating_sub(1)).unwrap_or_default();
         let start = error.column().saturating_sub(2);
@@ -65,18 +66,24 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// Fields that nobody asked for.
+    /// Fields that nobody asked for, each with the one that it is most like among those that somebody did.
     pub fn unread(&self) -> Vec<String> {
         let read = self.read.borrow();
-        self.map
-            .keys()
-            .filter(|key| !read.contains(*key))
-            .map(|key| format!("{}{key}", self.prefix))
+        let unread = self.map.keys().filter(|key| !read.contains(*key));
+        unread
+            .map(|key| {
+                let absent = read.iter().filter(|known| !self.map.contains_key(*known));
+                let like = absent.map(|known| (steps(key, known), known)).min();
+                let meant =
+                    like.filter(|(steps, _)| *steps <= LIKE).map(|(_, known)| format!(": \"{known}\"?"));
+                format!("\"{}{key}\" is not known{}", self.prefix, meant.unwrap_or_default())
+            })
             .collect()
     }
 
     /// Whether the field is there.
     pub fn has(&self, field: &str) -> bool {
+        self.read.borrow_mut().insert(field.to_owned());
         self.map.contains_key(field)
     }
 
@@ -207,8 +214,40 @@ impl<'a> Fields<'a> {
 
     fn value(&self, field: &str) -> Result<&'a Value, CaseError> {
         self.read.borrow_mut().insert(field.to_owned());
-        self.map.get(field).ok_or_else(|| self.error(field, "is missing"))
+        self.map.get(field).ok_or_else(|| {
+            let read = self.read.borrow();
+            let others =
+                self.map.keys().filter(|key| !read.contains(*key)).map(|key| (steps(key, field), key));
+            let like = others.min().filter(|(steps, _)| *steps <= LIKE && field.len() > LIKE);
+            let there = like.map(|(_, key)| format!("; \"{key}\" is there")).unwrap_or_default();
+            self.error(field, &format!("is missing{there}"))
+        })
     }
+}
+
+/// So many [`steps`] are between names that may be meant for each other.
+const LIKE: usize = 2;
+
+/// How many letters must be put in, taken out, changed or swapped with the next, to make one name of another;
+/// 9 for names that are longer than any field's.
+fn steps(from: &str, to: &str) -> usize {
+    let (from, to) = (from.as_bytes(), to.as_bytes());
+    if from.len() > 32 {
+        return 9;
+    }
+    let (mut before, mut last): (Vec<usize>, Vec<usize>) = (vec![], (0..=to.len()).collect());
+    for (i, a) in from.iter().enumerate() {
+        let mut row = vec![i + 1];
+        for (j, b) in to.iter().enumerate() {
+            let mut least = (last[j] + usize::from(a != b)).min(last[j + 1] + 1).min(row[j] + 1);
+            if i > 0 && j > 0 && *a == to[j - 1] && from[i - 1] == *b {
+                least = least.min(before[j - 1] + 1);
+            }
+            row.push(least);
+        }
+        (before, last) = (last, row);
+    }
+    last[to.len()]
 }
 
 /// What was expected, and what is there instead.

@@ -177,13 +177,32 @@ fn an_unknown_field_is_never_ignored() {
     assert_eq!(reason(&format!(r#"{GGX}, "coat": 1"#), QUAD), "the field \"coat\" is not known");
     assert_eq!(
         reason(GGX, &format!(r#"{QUAD}, "two_sidde": true"#)),
-        "the field \"light.two_sidde\" is not known"
+        "the field \"light.two_sidde\" is not known: \"two_sided\"?"
     );
     // A field of another kind of case is unknown too
     assert_eq!(
         reason(r#""bsdf": "diffuse", "albedo": [1, 1, 1], "alpha": 1"#, QUAD),
         "the field \"alpha\" is not known"
     );
+    let like = reason(r#""alpha": 0.25, "f0": [1, 1, 1]"#, QUAD);
+    assert_eq!(like, "the field \"f0\" is not known: \"F0\"?");
+    let missing = message(r#""alhpa": 0.25"#, QUAD);
+    assert_eq!(missing, "case 'a case': alpha: is missing; \"alhpa\" is there");
+}
+
+#[test]
+fn a_key_that_is_there_twice_is_refused() {
+    let text = case(GGX, QUAD);
+    let twice = |key: &str, more: &str| text.replacen(key, &format!("{more}, {key}"), 1);
+    for (doubled, key) in [
+        (twice("\"alpha\"", "\"alpha\": 0.5"), "alpha"),
+        (twice("\"type\"", "\"type\": \"disk\""), "type"),
+        (twice("\"name\"", "\"na\\u006de\": \"other\""), "name"),
+    ] {
+        let said = read_one(&doubled).unwrap_err().to_string();
+        assert!(said.contains(&format!("not JSON: the key \"{key}\" is there twice at line")), "{said}");
+    }
+    assert!(read_cases(&format!(r#"{{"cases": [], "cases": [{text}]}}"#)).is_err());
 }
 
 #[test]

@@ -31,7 +31,9 @@ fn supported() -> Vec<(Family, SupportedCase)> {
 fn image(path: &str) -> Arc<Texture> {
     static IMAGE: LazyLock<Arc<Texture>> = LazyLock::new(|| {
         let cases = format!("{}/../../tests/data/reference/cases.json", env!("CARGO_MANIFEST_DIR"));
-        Images::beside(Path::new(&cases)).load("light.exr").unwrap_or_else(|error| panic!("{error}"))
+        Images::beside(Path::new(&cases), |_| 1 << 30)
+            .load("light.exr")
+            .unwrap_or_else(|error| panic!("{error}"))
     });
     assert_eq!(path, "light.exr");
     Arc::clone(&IMAGE)

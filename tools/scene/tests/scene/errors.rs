@@ -1,9 +1,10 @@
 //! Bad files: each error names the file and the field.
 
+use crate::allocations::most_of;
 use crate::shapes::panel;
 use crate::writer::{Writer, container};
 use crate::{emitter_with, error};
-use arealight_scene::{Scene, SceneBuffers, SceneError};
+use arealight_scene::{LoadOptions, Scene, SceneBuffers, SceneError};
 use glam::DVec3;
 use serde_json::{Value, json};
 
@@ -102,6 +103,13 @@ fn fields_that_break_rules_are_named() {
             "componentType": 5125, "byteOffset": 4 }, "values": { "bufferView": 0 } });
             },
             "sparse: index",
+        ),
+        (
+            |r| {
+                r["accessors"][0]["sparse"] = json!({ "count": 2, "indices": { "bufferView": 0,
+            "componentType": 5121 }, "values": { "bufferView": 0 } });
+            },
+            "sparse: index 0 is not above the one before it",
         ),
         (
             |r| r["nodes"][0]["extensions"] = json!({ "EXT_lights_area": { "light": 0 } }),
@@ -280,6 +288,68 @@ fn what_lies_outside_of_the_scene_s_folder_is_not_read() {
     }
 }
 
+/// A file that holds no vertex, of `primitives` that share an accessor of `count` zeros.
+fn of_zeros(count: usize, primitives: usize) -> Vec<u8> {
+    let primitive = json!({ "attributes": { "POSITION": 0 } });
+    let root = json!({ "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "mesh": 0 }], "meshes": [{ "primitives": vec![primitive; primitives] }],
+        "accessors": [{ "componentType": 5126, "count": count, "type": "VEC3" }] });
+    root.to_string().into_bytes()
+}
+
+/// A file of many nodes with one mesh.
+fn of_nodes(count: usize) -> Vec<u8> {
+    let mut writer = emitter_with(&crate::shapes::sphere(1.0, 32, 32), json!({}));
+    writer.root["materials"][0] = json!({});
+    writer.root["nodes"] = vec![writer.root["nodes"][0].clone(); count].into();
+    writer.root["scenes"][0]["nodes"] = (0..count).collect::<Vec<_>>().into();
+    writer.glb()
+}
+
+#[test]
+fn memory_follows_the_file() {
+    const SMALL: Option<u64> = Some(8 << 20);
+    let load = |bytes: &[u8], memory| {
+        let options = LoadOptions { memory, ..LoadOptions::default() };
+        most_of(|| Scene::from_bytes_with(bytes, "small", options).map(drop))
+    };
+    for (bytes, memory, field) in [
+        (of_zeros(25_000_000, 1), None, "accessors[0]"),
+        (of_zeros(3_000_000, 20), None, "accessors[0]"),
+        (of_zeros(300_000, 1), SMALL, "accessors[0]"),
+        (of_nodes(100), SMALL, "primitives[0]: its triangles"),
+    ] {
+        let (refused, taken) = load(&bytes, memory);
+        let error = refused.unwrap_err();
+        assert!(matches!(error, SceneError::TooMuch { .. }) && error.to_string().contains(field), "{error}");
+        assert!(taken < memory.unwrap_or(300_000_000), "{field}: {taken} bytes");
+    }
+    // The twins: less of the same, and more memory
+    for (bytes, memory) in
+        [(of_zeros(30_000, 1), SMALL), (of_nodes(5), SMALL), (of_nodes(100), Some(1 << 28))]
+    {
+        let (loaded, taken) = load(&bytes, memory);
+        assert!(loaded.is_ok() && (100_000..memory.unwrap_or_default()).contains(&taken), "{taken} bytes");
+    }
+}
+
+#[test]
+fn numbers_above_an_index_are_none() {
+    let refused = |change: fn(&mut Value)| {
+        let mut writer = lamp();
+        change(&mut writer.root);
+        error(writer)
+    };
+    let said = refused(|root| root["nodes"][0]["mesh"] = json!(1_u64 << 32));
+    assert!(said.contains("mesh: 4294967296 is too large for an index at line 1"), "{said}");
+    let said = refused(|root| root["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(u64::MAX));
+    assert!(said.contains("POSITION: 18446744073709551615 is too large"), "{said}");
+    // The twin: sizes, and what is anybody's
+    let mut writer = lamp();
+    writer.root["extras"] = json!({ "id": u64::MAX });
+    crate::load(writer);
+}
+
 /// The checksum of a PNG's chunk.
 fn checksum(bytes: &[u8]) -> u32 {
     let step = |rest: u32, _| if rest & 1 == 0 { rest >> 1 } else { rest >> 1 ^ 0xedb8_8320 };
@@ -299,7 +369,7 @@ fn promised(png: &[u8]) -> Vec<u8> {
 fn images_that_are_too_many_texels_together_are_refused_by_their_headers() {
     let mut png = std::io::Cursor::new(Vec::new());
     image::RgbImage::new(4, 4).write_to(&mut png, image::ImageFormat::Png).unwrap();
-    let with = |images: &[&[u8]]| {
+    let with = |images: &[&[u8]], memory: Option<u64>| {
         let mut writer = lamp();
         for image in images {
             writer.texture("image", image);
@@ -307,12 +377,16 @@ fn images_that_are_too_many_texels_together_are_refused_by_their_headers() {
         // In the order in which they are read
         writer.root["materials"][0]["emissiveTexture"] = json!({ "index": 0 });
         writer.root["materials"][0]["normalTexture"] = json!({ "index": images.len() - 1 });
-        error(writer)
+        let options = LoadOptions { memory, ..LoadOptions::default() };
+        Scene::from_bytes_with(&writer.glb(), "test.glb", options).unwrap_err().to_string()
     };
     let promised = promised(png.get_ref());
-    let together = with(&[png.get_ref(), &promised]);
+    let together = with(&[png.get_ref(), &promised], Some(1 << 32));
     assert!(together.contains("texels of all images: 268435472, at most 268435456"), "{together}");
     // The twin: alone it is not too large, and its texels are missing
-    let alone = with(&[&promised]);
+    let alone = with(&[&promised], Some(1 << 32));
     assert!(alone.contains("images[0]: ") && !alone.contains("texels of all images"), "{alone}");
+    // So small a file may not take so much, whatever its texels are
+    let bomb = with(&[&promised], None);
+    assert!(bomb.contains("images[0]: takes 2147483648 bytes of memory, more than is left of 26"), "{bomb}");
 }

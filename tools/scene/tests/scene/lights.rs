@@ -154,6 +154,38 @@ fn area_lights_have_the_extensions_defaults() {
 }
 
 #[test]
+fn what_a_light_has_of_a_draft_is_said() {
+    let scene =
+        area_light(&json!({ "width": 2, "luminance": 5, "size": 3, "extras": { "id": 1 } }), &json!({}));
+    let said = ["luminance", "width"]
+        .map(|field| format!("light 'area light 0': {field} is no field of EXT_lights_area: left out"));
+    assert_eq!(warnings(&scene), said);
+}
+
+#[test]
+fn nits_of_a_light_and_of_a_mesh_are_said_to_differ() {
+    let notes = |scene: &Scene| scene.notes.iter().map(ToString::to_string).collect::<Vec<_>>();
+    let lamp = || emitter_with(&panel(1.0, 1.0), json!({}));
+    assert_eq!(notes(&load(lamp())), [""; 0]);
+    let mut writer = lamp();
+    writer.root["extensions"] = json!({ "EXT_lights_area": { "lights": [{}] } });
+    writer.node(json!({ "extensions": { "EXT_lights_area": { "light": 0 } } }));
+    let notes = notes(&load(writer));
+    assert!(notes.len() == 1 && notes[0].contains("1000 nits of these are 1.46"), "{notes:?}");
+}
+
+#[test]
+fn places_far_from_the_origin_have_all_of_their_digits() {
+    let at =
+        |x: f64| load(emitter_with(&panel(1.0, 1.0), json!({ "translation": [x, 0, 0] }))).lights[0].clone();
+    let (near, far) = (at(0.3), at(10_000_000.3));
+    for (a, b) in near.shape.vertices().iter().zip(far.shape.vertices()) {
+        // Ten roundings of float64; float32 has steps of one there
+        assert!((*b - *a - DVec3::X * 1e7).length() < 1e-8, "{a} {b}");
+    }
+}
+
+#[test]
 fn area_lights_scale_by_the_largest_component() {
     let light = json!({ "type": "rect", "color": [1.0, 0.5, 0.25], "intensity": 683, "size": 2,
                         "rect": { "aspect": 3 }, "name": "key" });

@@ -1,5 +1,6 @@
 //! Scenes from files made here, good and bad, and the project's own.
 
+mod allocations;
 mod closed_lights;
 mod compressed_views;
 mod draco;

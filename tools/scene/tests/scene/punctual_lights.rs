@@ -24,7 +24,7 @@ fn file(light: &Value, node: Value) -> Writer {
 }
 
 fn read(writer: Writer, light_size: Option<f64>) -> Result<Scene, SceneError> {
-    Scene::from_bytes_with(&writer.glb(), "test.glb", LoadOptions { light_size })
+    Scene::from_bytes_with(&writer.glb(), "test.glb", LoadOptions { light_size, ..LoadOptions::default() })
 }
 
 fn with_size(light: &Value, node: Value) -> Scene {

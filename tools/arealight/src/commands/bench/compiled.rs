@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         _ => Compiled::default(),
     };
     for path in [&arguments.save, &arguments.markdown, &arguments.update].into_iter().flatten() {
-        output::check(path)?;
+        output::check(path, None)?;
     }
 
     let driver = driver_file().ok_or_else(|| {

@@ -2,7 +2,7 @@
 
 use super::{Ends, document};
 use crate::failure::Failure;
-use crate::progress;
+use crate::{lights, progress};
 use arealight_benches::materials::{self, Options};
 use arealight_benches::sections::Markers;
 use arealight_scene::Scene;
@@ -39,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None => {
             Scene::from_bytes(BALLS, "materials.glb").map_err(|error| Failure::input("materials.glb", error))
         }
-        Some(path) => Scene::load(path).map_err(|error| Failure::Scene(error.to_string())),
+        Some(path) => lights::read(path, None),
     }?;
     let options = Options { size: [size * 16 / 9, *size], samples: *samples };
     let host = ends.host()?;

@@ -5,10 +5,8 @@ mod strip;
 
 use crate::commands::render::parse_size;
 use crate::failure::Failure;
-use crate::gpu;
-use crate::{output, progress};
+use crate::{gpu, lights, output, progress};
 use arealight_benches::ladder::{STEPS_BESIDE_THE_TRUTH, View, beside_the_truth};
-use arealight_scene::Scene;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -94,8 +92,8 @@ impl Arguments {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let format = arguments.format()?;
     let crop = arguments.crop()?;
-    let scene = Scene::load(&arguments.scene).map_err(|error| Failure::Scene(error.to_string()))?;
-    output::check(&arguments.output)?;
+    let scene = lights::read(&arguments.scene, None)?;
+    output::check(&arguments.output, [arguments.scene.as_path()])?;
     let host = gpu::host(arguments.device.device.as_deref())?;
 
     let scenes = match format {

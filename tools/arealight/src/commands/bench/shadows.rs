@@ -4,7 +4,7 @@ mod strip;
 
 use super::{Ends, document};
 use crate::failure::Failure;
-use crate::progress;
+use crate::{lights, progress};
 use arealight_benches::sections::Markers;
 use arealight_benches::{shadow_levels, shadow_motion};
 use arealight_scene::Scene;
@@ -71,8 +71,7 @@ impl Arguments {
             let count = if self.motion { FILMED } else { SCENES.len() };
             return SCENES.iter().take(count).map(built_in).collect();
         }
-        let load = |path: &PathBuf| Scene::load(path).map_err(|error| Failure::Scene(error.to_string()));
-        self.scenes.iter().map(load).collect()
+        self.scenes.iter().map(|path| lights::read(path, None)).collect()
     }
 
     /// The command that runs the same again, with these options beside the scenes.

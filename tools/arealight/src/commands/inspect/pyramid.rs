@@ -1,9 +1,9 @@
 //! A light's texture as the GPU prefilters it, read back.
 
 use crate::failure::Failure;
-use crate::gpu;
 use crate::picture::srgb_from_linear;
 use crate::plots::bytes_of;
+use crate::{gpu, lights};
 use arealight::TexturePart;
 use arealight::pyramid::PyramidSize;
 use arealight_engine::{Engine, EngineError, SourceImage, SourceTexels};
@@ -51,7 +51,7 @@ pub fn make(path: &Path, layer: u32, device: Option<&str>) -> Result<Pyramid, Fa
     let ending = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).unwrap_or_default();
     let (name, input) = match ending.as_str() {
         "glb" | "gltf" => {
-            let scene = Scene::load(path).map_err(|error| Failure::Scene(error.to_string()))?;
+            let scene = lights::read(path, None)?;
             (layer_name(path, &scene, layer)?, Input::Scene(Box::new(scene)))
         }
         _ if layer > 0 => {
@@ -92,8 +92,6 @@ fn layer_name(path: &Path, scene: &Scene, layer: u32) -> Result<String, Failure>
     let lights: Vec<&str> = scene.lights.iter().filter(shows).map(|light| light.name.as_str()).collect();
     let more = if lights.len() > 1 { format!(" and {} more", lights.len() - 1) } else { String::new() };
     let light = lights.first().copied().unwrap_or_default();
-    // Text of a file that may be anybody's must not steer the terminal
-    let (image, light) = (image.escape_debug(), light.escape_debug());
     Ok(format!("{}: '{image}', shown by '{light}'{more}", path.display()))
 }
 

@@ -19,7 +19,7 @@ const FRAMES: usize = 4;
 /// Refuses a file that is no PNG, or cannot be written.
 pub fn check(path: &Path) -> Result<(), Failure> {
     if path.extension().is_some_and(|ending| ending == "png") {
-        return output::check(path);
+        return output::check(path, None);
     }
     let message = format!("{}: the file's name must end in .png", path.display());
     Err(Failure::Argument { argument: "--strip", message })
