@@ -93,9 +93,9 @@ ArealightTube arealight_tube(vec3 center, vec3 half_axis, float radius, int ends
     tube.half_length = dot(half_axis, tube.axis);
     // From the axis to the point, by the nearer end, or the center where that is nearer: its error is a part
     // of this distance
-    vec3 near = dot(start, start) < dot(end, end) ? start : end;
-    near = dot(center, center) < dot(near, near) ? center : near;
-    vec3 foot = near - tube.axis * dot(near, tube.axis);
+    vec3 nearer = dot(start, start) < dot(end, end) ? start : end;
+    nearer = dot(center, center) < dot(nearer, nearer) ? center : nearer;
+    vec3 foot = nearer - tube.axis * dot(nearer, tube.axis);
     foot -= tube.axis * dot(foot, tube.axis);
     float square = dot(foot, foot);
     float reciprocal = inversesqrt(max(square, AREALIGHT_TINY));
