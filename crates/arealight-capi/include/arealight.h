@@ -11,7 +11,11 @@
 // counter-clockwise.
 //
 // Every function that returns an ArealightResult checks what it can, records nothing where it fails, writes nothing but the sizes that are
-// needed and a null handle, and leaves a message for arealight_last_error. An object is used by one thread at a time.
+// needed and a null handle, and leaves a message for arealight_last_error.
+//
+// Threads: functions that take an object as const may be called for it by several at once, each with command buffers, sets and
+// arrays of its own; all others, and arealight_..._destroy, by one while no other uses the object. Objects are independent.
+// C99 or C++11, or later.
 
 #ifndef AREALIGHT_H
 #define AREALIGHT_H
@@ -876,7 +880,8 @@ enum ArealightResult arealight_lobe_horizons(const struct Arealight *arealight,
 enum ArealightResult arealight_destroy(struct Arealight *arealight);
 
 // The message of this thread's last failed call, in UTF-8: what is wrong, where, and what to do. Empty where
-// none has. Valid until the next call of this thread that fails.
+// none has. At most 4,095 bytes, in a buffer that the thread keeps until it ends: the next call of this
+// thread that fails writes its own message there.
 const char *arealight_last_error(void);
 
 // Packs lights relative to `origin` (three numbers, in world positions) into arrays of the host, which

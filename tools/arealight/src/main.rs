@@ -34,8 +34,8 @@ struct CommandLine {
     /// Say which device and table are used, and print every table of a report.
     #[arg(short, long, global = true, conflicts_with = "quiet")]
     verbose: bool,
-    /// The most memory that what is read may take: bytes, or with K, M or G; without it 256M and 256 bytes for
-    /// each byte of the files.
+    /// The most memory that what is read may take: bytes, or with K, M or G; without it 256M and 256 bytes
+    /// for each byte of the files.
     #[arg(long, global = true, value_name = "SIZE", value_parser = memory::parse)]
     memory: Option<u64>,
     #[command(subcommand)]

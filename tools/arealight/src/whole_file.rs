@@ -13,8 +13,8 @@ const NAMES: (&str, &str) = (".arealight-", ".new");
 /// How old such a file is that nobody writes any more: it is written at once.
 const STALE: Duration = Duration::from_secs(600);
 
-/// A file on its way to `path`. On Linux it has no name until it is whole, so that nothing is left of it where
-/// the program is killed; where that cannot be, one that is removed.
+/// A file on its way to `path`. On Linux it has no name until it is whole, so that nothing is left of it
+/// where the program is killed; where that cannot be, one that is removed.
 pub struct WholeFile {
     file: File,
     name: Option<PathBuf>,

@@ -8,7 +8,8 @@ use gltf::json::accessor::{ComponentType, Type};
 /// The most elements an accessor may have: the corners of as many triangles as a scene may have.
 pub(crate) const MAX_ELEMENTS: u64 = 3 * MAX_TRIANGLES as u64;
 
-/// What is made of an accessor's bytes takes so many times as much: the bytes, numbers, and those in the world.
+/// What is made of an accessor's bytes takes so many times as much: the bytes, numbers, and others in the
+/// world.
 const COPIES: u64 = 4;
 
 /// An accessor's elements, tightly packed.

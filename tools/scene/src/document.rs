@@ -3,8 +3,7 @@
 use crate::budget::Budget;
 use crate::error::SceneError;
 use crate::extensions;
-use crate::indices;
-use crate::transforms::Place;
+use crate::numbers::{self, Place, Places};
 use gltf::json;
 use std::path::{Component, Path, PathBuf};
 
@@ -47,7 +46,7 @@ impl Document {
         let (text, blob) =
             split(bytes).map_err(|reason| SceneError::NotGltf { file: file.clone(), reason })?;
         // Parse and check the JSON
-        let (root, Places { nodes: places }) = indices::check(text)
+        let (root, Places { nodes: places }) = numbers::check(text)
             .and_then(|()| Ok((parse_root(text)?, serde_json::from_slice(text)?)))
             .map_err(|e| SceneError::NotGltf { file: file.clone(), reason: e.to_string() })?;
         let budget = Budget::new(memory);
@@ -253,13 +252,6 @@ impl Document {
         bytes.truncate(expected as usize);
         Ok(bytes)
     }
-}
-
-/// Those of a JSON's nodes.
-#[derive(serde::Deserialize)]
-struct Places {
-    #[serde(default)]
-    nodes: Vec<Place>,
 }
 
 /// The JSON's root. A scene may be without `nodes`, which the gltf crate insists on.

@@ -5,21 +5,12 @@ use crate::accessor;
 use crate::document::Document;
 use crate::error::SceneError;
 use crate::extensions::INSTANCING;
+use crate::numbers::Place;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf::json;
 
 /// The most nodes and instances a scene may have, where it has instances; a file beyond is refused.
 const MAX_INSTANCES: usize = 1 << 20;
-
-/// Where a node is in its parent's space, in all digits of the file: the gltf crate has float32, too few for
-/// what is far from the origin.
-#[derive(Debug, Default, serde::Deserialize)]
-pub(crate) struct Place {
-    matrix: Option<[f64; 16]>,
-    translation: Option<[f64; 3]>,
-    rotation: Option<[f64; 4]>,
-    scale: Option<[f64; 3]>,
-}
 
 /// From a node's space to its parent's, or what is wrong with it.
 pub(crate) fn of_node(place: &Place) -> Result<DAffine3, String> {

@@ -18,7 +18,8 @@ fn within_little(folder: &Path, arguments: &[&str]) -> Output {
 fn case(more: &str, light: &str) -> String {
     format!(
         r#"{{"cases": [{{"name": "c", "position": [0, 0, 0], "normal": [0, 0, 1], "view": [0, 0, 1], {more},
-            "bsdf": "diffuse", "albedo": [1, 1, 1], "light": {{"type": "polygon", "radiance": [1, 1, 1], {light}
+            "bsdf": "diffuse", "albedo": [1, 1, 1],
+            "light": {{"type": "polygon", "radiance": [1, 1, 1], {light}
             "vertices": [[-1, -1, 1], [-1, 1, 1], [1, 1, 1], [1, -1, 1]]}}}}]}}"#
     )
 }
@@ -27,7 +28,7 @@ fn case(more: &str, light: &str) -> String {
 fn of_zeros(primitives: usize) -> String {
     let one = r#"{"attributes": {"POSITION": 0}, "material": 0}"#;
     format!(
-        r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}],
+        r#"{{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}],
             "meshes": [{{"primitives": [{}]}}], "materials": [{{"emissiveFactor": [1, 1, 1]}}],
             "accessors": [{{"componentType": 5126, "count": 25000000, "type": "VEC3"}}]}}"#,
         vec![one; primitives].join(",")

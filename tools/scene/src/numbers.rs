@@ -1,8 +1,26 @@
-//! Numbers that are too large for an index: the gltf crate would take 2^32 for 0.
+//! Numbers as the file has them, where the gltf crate would change them: it takes 2^32 for 0, and has float32
+//! alone.
 
+use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use std::borrow::Cow;
 use std::fmt;
+
+/// Where a node is in its parent's space, in all digits, which what is far from the origin needs.
+#[derive(Debug, Default, Deserialize)]
+pub(crate) struct Place {
+    pub matrix: Option<[f64; 16]>,
+    pub translation: Option<[f64; 3]>,
+    pub rotation: Option<[f64; 4]>,
+    pub scale: Option<[f64; 3]>,
+}
+
+/// Those of a JSON's nodes.
+#[derive(Deserialize)]
+pub(crate) struct Places {
+    #[serde(default)]
+    pub nodes: Vec<Place>,
+}
 
 /// Sizes, numbers that somebody may write without a fraction, and what is anybody's.
 const OTHERS: [&str; 12] = [
@@ -88,5 +106,5 @@ impl<'de> Visitor<'de> for Numbers<'_> {
 }
 
 /// A key, borrowed where it has no escape.
-#[derive(serde::Deserialize)]
+#[derive(Deserialize)]
 struct Key<'a>(#[serde(borrow)] Cow<'a, str>);
