@@ -3,8 +3,8 @@
 
 // Arealight: analytic area lights by linearly transformed cosines.
 //
-//     radiance = sum over lights L_e(light) x sum over lobes albedo(lobe) x F(light in the lobe's cosine
-//     space)
+//     radiance = sum over lights L_e(light)
+//              x sum over lobes albedo(lobe) x F(light in the lobe's cosine space)
 //
 // A kind of light knows its vector form factor F in any linear space, and no lobe; a lobe knows its space and
 // its albedo, and no light; light_kind.glsl sums over both. Use:
@@ -17,15 +17,20 @@
 //     radiance += arealight_radiance(point, quad);                  // for each light, of any kind
 //
 // Reading order:
-//   common.glsl, options.glsl conventions; what a translation unit may switch surface.glsl a shading point's
-//   surface and frame thin_film.glsl what films on it reflect, and the reflectances that stand for them
-//   lobes/* table.glsl, formula.glsl -> specular.glsl -> anisotropy.glsl, coat.glsl; diffuse.glsl;
-//   sheen.glsl; lobe.glsl material.glsl which lobes a surface has: ArealightPoint form_factor/* arcs, quads,
-//   outlines, ellipses, spheres, tubes in any linear space lights/* a file per kind of light light_kind.glsl
-//   the loop over lobes textures/* what a lobe sees of a light's image shadows/* rays drawn from the lobes,
-//   for hosts that trace: shadow_sampling.glsl, included by itself reach.glsl how far a light is of any
-//   matter, for clusters, included by itself self_test.glsl whether a host's table is loaded as it should be,
-//   included by itself
+//   common.glsl, options.glsl  conventions; what a translation unit may switch
+//   surface.glsl               a shading point's surface and frame
+//   thin_film.glsl             what films on it reflect, and the reflectances that stand for them
+//   lobes/*                    table.glsl, formula.glsl -> specular.glsl -> anisotropy.glsl, coat.glsl;
+//                              diffuse.glsl; sheen.glsl; lobe.glsl
+//   material.glsl              which lobes a surface has: ArealightPoint
+//   form_factor/*              arcs, quads, outlines, ellipses, spheres, tubes in any linear space
+//   lights/*                   a file per kind of light
+//   light_kind.glsl            the loop over lobes
+//   textures/*                 what a lobe sees of a light's image
+// Included by themselves:
+//   shadows/*                  rays drawn from the lobes, for hosts that trace: shadow_sampling.glsl
+//   reach.glsl                 how far a light is of any matter, for clusters
+//   self_test.glsl             whether a host's table is loaded as it should be
 #include "arealight/material.glsl"
 #if AREALIGHT_QUADS
 #include "arealight/lights/quad.glsl"

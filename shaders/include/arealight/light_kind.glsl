@@ -6,15 +6,17 @@
 // The sum of a light over lobes. A kind of light is a record with `radiance`, a type for it in the shading
 // frame of a point, and functions:
 //
-//     // The light in the shading frame; false where it does not shine onto the point's side bool
-//     arealight_to_local(ArealightPoint point, Light light, out Local local); // Its vector form factor in a
-//     linear space, clipped at that space's horizon: it points to where the light comes from, // and its z is
-//     the form factor vec3 arealight_vector_form_factor(mat3 space, Local local); // The vector form factor
-//     of facets, over half vectors, and whether there is one: of polygons alone (with AREALIGHT_HALF_VECTORS)
-//     vec3 arealight_facet_form_factor(ArealightFacets facets, Local local); bool
-//     arealight_has_facet_form_factor(Local local); // which AREALIGHT_WITHOUT_HALF_VECTORS(Local) makes for
-//     a kind that has none // The colour of its image averaged over a lobe, 1 without: what the radiance is
-//     multiplied with vec3 arealight_image_average(mat3 space, Local local, vec3 vector);
+//     // The light in the shading frame; false where it does not shine onto the point's side
+//     bool arealight_to_local(ArealightPoint point, Light light, out Local local);
+//     // Its vector form factor in a linear space, clipped at that space's horizon: it points to where the
+//     // light comes from, and its z is the form factor
+//     vec3 arealight_vector_form_factor(mat3 space, Local local);
+//     // The vector form factor of facets, over half vectors, and whether there is one: of polygons alone
+//     // (with AREALIGHT_HALF_VECTORS). AREALIGHT_WITHOUT_HALF_VECTORS(Local) makes both for other kinds
+//     vec3 arealight_facet_form_factor(ArealightFacets facets, Local local);
+//     bool arealight_has_facet_form_factor(Local local);
+//     // The colour of its image averaged over a lobe, 1 without: what the radiance is multiplied with
+//     vec3 arealight_image_average(mat3 space, Local local, vec3 vector);
 //
 // AREALIGHT_LIGHT_KIND(Light, Local, EACH_LOBE), the last line of its file, makes of them arealight_reflected
 // and arealight_radiance. EACH_LOBE is AREALIGHT_UNROLLED_LOBES, or for kinds whose form factor is a loop

@@ -84,8 +84,8 @@ fn every_effect_is_asked_for_and_no_other() {
             }
         }
     }
-    // Once where it is defined, and where it matters
-    assert!(uses.values().all(|count| *count >= 2), "{uses:?}");
+    // Once where it is defined, and where it matters; glass to Effects::passes alone
+    assert!(uses.iter().all(|(name, count)| *count >= 2 || name == "GLASS"), "{uses:?}");
     let twin: Vec<_> = names_after("a & A_ONE) | A_TWO_2;", "A_").collect();
     assert_eq!(twin, ["ONE", "TWO_2"]);
 }

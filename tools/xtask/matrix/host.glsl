@@ -2,9 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 
 // A host of the GLSL library, in every way that the matrix asks for by macros:
-//   COMPUTE a compute shader, else a fragment shader COMBINED combined image samplers, else images and
-//   samplers apart SPECIALIZED the library's options are specialisation constants, else what the command line
-//   says, or the defaults WITHOUT_<bridge> the host forgot that bridge
+//   COMPUTE            a compute shader, else a fragment shader
+//   COMBINED           combined image samplers, else images and samplers apart
+//   SPECIALIZED        the library's options are specialisation constants, else what the command line says
+//   WITHOUT_<bridge>   the host forgot that bridge
 
 #if SPECIALIZED
 layout(constant_id = 0) const bool DIFFUSE = true;

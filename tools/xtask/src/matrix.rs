@@ -54,7 +54,12 @@ struct Case {
     naga: bool,
     /// Compilation must fail, and name this.
     lacks: Option<String>,
+    /// The folder of includes in an export.
+    include: &'static str,
 }
+
+/// Folders of includes in an export: the library, and the library in one file.
+const INCLUDES: [&str; 2] = ["include", "single"];
 
 /// Whether every case does as it should.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
@@ -63,18 +68,22 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
         Some(folder) => folder.clone(),
         None => export(root, &scratch.path().join("library"))?,
     };
-    let include = folder.join("include");
-    let library = Library::read(&include.join("arealight"))?;
+    let library = Library::read(&folder.join("include/arealight"))?;
 
     let mut cases = hosts(&root.join(HOST), &library, arguments.all);
     cases.extend(examples(&root.join(EXAMPLES))?);
     cases.extend(host_g_buffer(&folder));
     cases.extend(host_bridges(&folder));
+    let in_one =
+        cases.iter().filter(|case| case.tool == Tool::Glslang && case.compute && case.is_of_one_file());
+    let in_one: Vec<Case> =
+        in_one.map(|case| Case { include: INCLUDES[1], naga: false, ..case.clone() }).collect();
+    cases.extend(in_one);
     let found = in_parallel(&cases, |index, case| {
         if arguments.verbose {
             println!("{}", case.title());
         }
-        case.run(&include, &scratch.path().join(format!("{index}.spv")))
+        case.run(&folder, &scratch.path().join(format!("{index}.spv")))
     })?;
     let failures: Vec<String> = found.into_iter().flatten().collect();
     let validator_can_fail = validator_refuses(&scratch.path().join("0.spv"))?;
@@ -103,7 +112,8 @@ fn hosts(shader: &Path, library: &Library, all: bool) -> Vec<Case> {
         // WebGPU has neither combined samplers nor what a pipeline leaves open
         let naga = !combined && !macros.iter().any(|(name, _)| name == "SPECIALIZED");
         let name = format!("{name}, {}", if combined { "combined samplers" } else { "separate samplers" });
-        cases.push(Case { tool, compute, shader: shader.to_owned(), name, macros, naga, lacks });
+        let shader = shader.to_owned();
+        cases.push(Case { tool, compute, shader, name, macros, naga, lacks, include: INCLUDES[0] });
     };
     for (first, tool) in [Tool::Glslang, Tool::Glslc].into_iter().enumerate() {
         for (kind, (compute, combined)) in KINDS.into_iter().enumerate() {
@@ -210,15 +220,8 @@ fn examples(folder: &Path) -> Result<Vec<Case>, TaskError> {
         let optimised = ["-O", "-Os"].map(Tool::GlslcOptimised);
         for tool in [Tool::Glslang, Tool::Glslc].into_iter().chain(optimised) {
             let (shader, macros) = (shader.clone(), vec![]);
-            cases.push(Case {
-                tool,
-                compute,
-                shader,
-                name: "example".into(),
-                macros,
-                naga: false,
-                lacks: None,
-            });
+            let (name, include) = ("example".into(), INCLUDES[0]);
+            cases.push(Case { tool, compute, shader, name, macros, naga: false, lacks: None, include });
         }
     }
     Ok(cases)
@@ -234,6 +237,7 @@ fn host_g_buffer(folder: &Path) -> Vec<Case> {
         macros: vec![("AREALIGHT_HOST_G_BUFFER".into(), "1".into())],
         naga: false,
         lacks: None,
+        include: INCLUDES[0],
     };
     [Tool::Glslang, Tool::Glslc].map(case).to_vec()
 }
@@ -256,12 +260,18 @@ fn host_bridges(folder: &Path) -> Vec<Case> {
             macros: options.iter().map(|option| ((*option).into(), "1".into())).collect(),
             naga: false,
             lacks: None,
+            include: INCLUDES[0],
         })
     });
     cases.collect()
 }
 
 impl Case {
+    /// Whether it is compiled with the library in one file, too: examples, and hosts of one kind of light.
+    fn is_of_one_file(&self) -> bool {
+        self.name == "example" || self.name.contains("S 1 alone") || self.name.contains("everything")
+    }
+
     fn title(&self) -> String {
         let stage = if self.compute { "compute" } else { "fragment" };
         let tool = match self.tool {
@@ -270,12 +280,12 @@ impl Case {
             Tool::GlslcOptimised(option) => format!("glslc {option}"),
         };
         let file = self.shader.file_name().unwrap_or_default().to_string_lossy();
-        format!("{tool}, {stage}: {file}, {}", self.name)
+        format!("{tool}, {stage}, {}: {file}, {}", self.include, self.name)
     }
 
     /// Compiles and validates; `None` where all is as it should be, else what is wrong.
-    fn run(&self, include: &Path, module: &Path) -> Result<Option<String>, TaskError> {
-        let output = self.compile(include, module)?;
+    fn run(&self, folder: &Path, module: &Path) -> Result<Option<String>, TaskError> {
+        let output = self.compile(folder, module)?;
         let said = said(&output);
         let failure = |what: &str| Some(format!("{}: {what}\n{said}", self.title()));
         if let Some(lacks) = &self.lacks {
@@ -297,14 +307,15 @@ impl Case {
         Ok(refused.map(|why| format!("{}: naga says\n{why}", self.title())))
     }
 
-    fn compile(&self, include: &Path, module: &Path) -> Result<Output, TaskError> {
+    fn compile(&self, folder: &Path, module: &Path) -> Result<Output, TaskError> {
+        let (include, examples) = (folder.join(self.include), folder.join("examples"));
         let (mut command, program, package) = match self.tool {
             Tool::Glslang => {
                 let mut command = Command::new("glslangValidator");
                 let stage = if self.compute { "comp" } else { "frag" };
                 command.args(["--target-env", "vulkan1.1", "-S", stage]);
                 command.arg(format!("-I{}", include.display()));
-                command.arg(format!("-I{}", include.join("../examples").display()));
+                command.arg(format!("-I{}", examples.display()));
                 (command, "glslangValidator", "glslang-tools")
             }
             Tool::Glslc | Tool::GlslcOptimised(_) => {
@@ -314,7 +325,7 @@ impl Case {
                 }
                 let stage = if self.compute { "compute" } else { "fragment" };
                 command.args(["--target-env=vulkan1.1", "-c", &format!("-fshader-stage={stage}"), "-I"]);
-                command.arg(include).arg("-I").arg(include.join("../examples"));
+                command.arg(include).arg("-I").arg(examples);
                 (command, "glslc", "glslc")
             }
         };
@@ -383,7 +394,8 @@ mod tests {
         let shader = folder.join("host.comp");
         std::fs::write(&shader, text).unwrap();
         let lacks = lacks.map(str::to_owned);
-        Case { tool, compute: true, shader, name: "test".into(), macros: vec![], naga: false, lacks }
+        let name = "test".into();
+        Case { tool, compute: true, shader, name, macros: vec![], naga: false, lacks, include: "" }
     }
 
     const GOOD: &str = "#version 450\nlayout(local_size_x = 1) in;\nvoid main() {}\n";

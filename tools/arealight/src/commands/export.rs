@@ -4,6 +4,7 @@ mod bridges;
 mod folder;
 mod interface;
 mod manifest;
+mod single;
 mod target;
 mod translate;
 
@@ -84,6 +85,11 @@ fn files(arguments: &Arguments) -> Result<Vec<File>, Failure> {
             content: manifest::content_of(path).into(),
         })
         .collect();
+    files.extend(single::FILES.map(|name| File {
+        path: format!("single/{name}"),
+        bytes: single::single(LIBRARY, name).replace("\r\n", "\n").into_bytes(),
+        content: "the GLSL library in one file; include it or paste it".into(),
+    }));
     let table = ggx_file();
     for (name, target, floats) in [
         ("ggx.ktx2", Target::Ktx2(Precision::Half), "rgba16f"),
