@@ -1,6 +1,7 @@
 //! The GLSL library in one file, for people who paste.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
 
 /// What is written as one file each: below `include/` in an export, and below `single/`.
 pub const FILES: [&str; 2] = ["arealight/arealight.glsl", "arealight/self_test.glsl"];
@@ -20,7 +21,7 @@ pub fn single(library: &[(&str, &str)], name: &str) -> String {
         let options: Vec<&str> = found.needed_by[name].iter().filter_map(|option| *option).collect();
         let is_always = found.needed_by[name].contains(&None);
         if !is_always {
-            text += &format!("\n#if {}", options.join(" || "));
+            let _ = write!(text, "\n#if {}", options.join(" || "));
         }
         text += "\n";
         let lines = found.source(name).lines().filter(|line| included(line).is_none());
