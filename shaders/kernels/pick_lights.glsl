@@ -12,13 +12,18 @@
 
 uint picked[MOST_SHADOW_RAYS];
 float pick_random[MOST_SHADOW_RAYS];
-// The luminance of what the lights so far add.
+// What the picked light adds by the picked lobe.
+vec3 pick_radiance[MOST_SHADOW_RAYS];
+// The luminance of what the lights so far add, and what they add by the diffuse lobe.
 float pick_sum;
+vec3 pick_diffuse;
 
 void begin_picks(ivec2 pixel) {
     pick_sum = 0.0;
+    pick_diffuse = vec3(0.0);
     for (int ray = 0; ray < SHADOW_RAYS; ray++) {
         picked[ray] = NO_PICK;
+        pick_radiance[ray] = vec3(0.0);
         pick_random[ray] = arealight_sequence(uvec2(pixel), constants.seed * uint(SHADOW_RAYS) + uint(ray));
     }
 }
@@ -37,15 +42,29 @@ void pick_light(uint light, vec3 diffuse, vec3 specular) {
             bool is_specular = part > diffuse_part && arealight_choose(pick_random[ray], of_lobes, part
                                                                        - diffuse_part);
             picked[ray] = light | (is_specular ? PICK_SPECULAR : 0u);
+            pick_radiance[ray] = is_specular ? specular : diffuse;
         }
     }
     pick_sum += part;
+    pick_diffuse += diffuse;
 }
 
-void store_picks(ivec2 pixel, ivec2 size) {
-    uint first = first_pick(pixel, size);
+// The colour of a radiance, of luminance 1.
+vec3 pick_color(vec3 radiance) {
+    return radiance / max(arealight_luminance(radiance), 1e-37);
+}
+
+// Stores them, for a pixel that reflects `radiance` without shadows.
+void store_picks(ivec2 pixel, ivec2 size, vec3 radiance) {
+    uint at = pixel_picks(pixel, size);
+    vec3 specular = max(radiance - pick_diffuse, 0.0);
+    shadow_picks[at] = pack_tens(1023.0 * specular / max(radiance, 1e-37));
     for (int ray = 0; ray < SHADOW_RAYS; ray++) {
-        shadow_picks[first + uint(ray)] = picked[ray];
+        vec3 all = pick_color((picked[ray] & PICK_SPECULAR) != 0u ? specular : pick_diffuse);
+        shadow_picks[ray_pick(at, ray)] = picked[ray];
+        // 1 in a channel that has no light
+        shadow_picks[ray_pick(at, ray) + 1u] = pack_color((pick_color(pick_radiance[ray]) + 1e-6)
+                                                          / (all + 1e-6));
     }
 }
 

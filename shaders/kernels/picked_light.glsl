@@ -18,6 +18,8 @@ struct PickedLight {
     uint end;
     bool is_mesh;
     bool two_sided;
+    vec3 cap;      // of a tube, the center of the flat end that the point sees beside its side, from the point
+    vec3 cap_axis; // along the tube, as long as its radius; zero where there is no such end
 };
 
 // The silhouette of a sphere, as a disk. A point inside of it has none.
@@ -51,9 +53,22 @@ ArealightShadowOutline tube_outline(vec3 center, vec3 half_axis, float radius, i
     return arealight_rectangle_outline(center - radius * sine * toward, reach * axis, side);
 }
 
+// Finds the flat end of a tube that a point sees beside its side. Error: where the two meet, the half of the
+// end's outline that is before the side.
+void find_end(inout PickedLight light, vec3 half_axis, float radius) {
+    float half_length = max(length(half_axis), 1e-37);
+    vec3 axis = half_axis / half_length;
+    float along = dot(light.center, axis);
+    if (abs(along) > half_length && length(light.center - along * axis) > radius) {
+        light.cap = light.center + (along > 0.0 ? -half_axis : half_axis);
+        light.cap_axis = radius * axis;
+    }
+}
+
 PickedLight picked_light(uint pick, vec3 position) {
     PickedLight light;
     light.is_mesh = false;
+    light.cap_axis = vec3(0.0);
     light.row = 0u;
     light.end = 0u;
     uint index = pick & PICK_INDEX;
@@ -75,6 +90,9 @@ PickedLight picked_light(uint pick, vec3 position) {
     if (HAS_TUBES && record.kind == SHAPE_TUBE) {
         light.outline = tube_outline(light.center, record.axis_u, record.radius, int(record.detail));
         light.size = 2.0 * sqrt(record.radius * length(record.axis_u));
+        if (int(record.detail) == AREALIGHT_TUBE_FLAT) {
+            find_end(light, record.axis_u, record.radius);
+        }
     } else if (HAS_SPHERES && record.kind == SHAPE_SPHERE) {
         light.outline = sphere_outline(light.center, record.radius);
         light.size = 1.7724539 * record.radius;
@@ -101,27 +119,42 @@ bool next_face(inout PickedLight light) {
     return false;
 }
 
-// The size of the form factor of a light in the space that `to_space` leads to: of a mesh the sum of its
-// faces'.
-float picked_light_weight(PickedLight light, mat3 to_space) {
-    if (!light.is_mesh) {
-        return arealight_outline_weight(light.outline, to_space);
+// Goes on from the side of a tube to the end that is seen beside it, if there is one.
+bool next_end(inout PickedLight light) {
+    if (!HAS_TUBES || light.cap_axis == vec3(0.0)) {
+        return false;
     }
-    float sum = 0.0;
-    while (next_face(light)) {
+    vec3 axis_u, axis_v;
+    arealight_perpendiculars(normalize(light.cap_axis), axis_u, axis_v);
+    float radius = length(light.cap_axis);
+    light.outline = arealight_ellipse_outline(light.cap, radius * axis_u, radius * axis_v);
+    light.cap_axis = vec3(0.0);
+    return true;
+}
+
+// Goes on to the next outline of a light of several.
+bool next_outline(inout PickedLight light) {
+    return light.is_mesh ? next_face(light) : next_end(light);
+}
+
+// The size of the form factor of a light in the space that `to_space` leads to: of several outlines their
+// sum.
+float picked_light_weight(PickedLight light, mat3 to_space) {
+    float sum = light.is_mesh ? 0.0 : arealight_outline_weight(light.outline, to_space);
+    while (next_outline(light)) {
         sum += arealight_outline_weight(light.outline, to_space);
     }
     return sum;
 }
 
-// The outline to draw over: of a mesh one face's, chosen by its form factor.
+// The outline to draw over: of several one, chosen by its form factor.
 ArealightShadowOutline chosen_outline(PickedLight light, mat3 to_space, inout float random) {
-    if (!light.is_mesh) {
+    if (!light.is_mesh && (!HAS_TUBES || light.cap_axis == vec3(0.0))) {
         return light.outline;
     }
     ArealightShadowOutline chosen = light.outline;
-    float sum = 0.0;
-    while (next_face(light)) {
+    float sum = light.is_mesh ? 0.0 : arealight_outline_weight(light.outline, to_space);
+    while (next_outline(light)) {
         float weight = arealight_outline_weight(light.outline, to_space);
         if (weight > 0.0 && arealight_choose(random, sum, weight)) {
             chosen = light.outline;

@@ -197,7 +197,7 @@ void shade_pixel(ivec2 pixel, LightList list) {
         }
     }
     if (HAS_SHADOWS) {
-        store_picks(pixel, size);
+        store_picks(pixel, size, sum.radiance);
     }
     store_radiance(radiance_texel(pixel), hit, G_BUFFER_SAMPLES > 1 ? coverage : 1.0, sum);
 }

@@ -2,14 +2,16 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Multiplies the unshadowed radiance with what of it arrives: the mean of the pixel's rays, or of those of
-// its neighbours in the same plane too, over a part of the penumbra that it is in. Where no neighbour has a
-// ray that is hidden nothing is filtered, nor at contact, whose penumbra has no width.
+// Multiplies each channel of the unshadowed radiance with what of it arrives, of each lobe apart: the mean of
+// the pixel's rays, or of those of its neighbours in the same plane too, over a part of the penumbra that it
+// is in. Where no neighbour has a ray that is hidden nothing is filtered, nor at contact, whose penumbra has
+// no width.
 //
 // Source of the filter's width: Fernando 2005 (percentage-closer soft shadows), with blockers found by the
 // rays themselves.
 
 #include "shadow_resources.glsl"
+#include "shadow_colors.glsl"
 #include "shadow_history.glsl"
 #include "shadow_neighbours.glsl"
 
@@ -34,43 +36,72 @@ const int PATCH = 8 + 2 * REACH;
 // one ray.
 const float PENUMBRA_PART = 0.1;
 const float LEAST_WIDTH = 2.0;
+// The mean ends at so many standard deviations.
+const float MEAN_END = 2.5;
 
-// What a workgroup knows of its pixels and those around them: the position, and in w (what arrives, the
-// penumbra's width) as halves.
+// What a workgroup knows of its pixels and those around them: the position, and in w (the part that is hidden,
+// the penumbra's width times that) as halves.
 shared vec4 patch_texels[PATCH * PATCH];
 // The normal; 0 where there is no light.
 shared uint patch_normals[PATCH * PATCH];
+// The parts of the rays that are of the diffuse lobe and hidden, and of it, and the same of the specular
+// lobes, as unorms; and pack_colors.
+shared uint patch_rays[PATCH * PATCH];
+shared uvec4 patch_colors[PATCH * PATCH];
+// Whether any of them has a ray that is hidden; and one whose colour is not that of all light of its lobe.
+shared bool any_is_hidden;
+shared bool any_is_colored;
 
-// What is known of a pixel, as a texel of shadow_image.
-vec4 load_shadow(ivec2 pixel, ivec2 size) {
+// What is known of a pixel: a texel of shadow_image, and colours.
+struct Shadow {
+    vec4 texel;
+    ShadowColors colors;
+};
+
+Shadow load_shadow(ivec2 pixel, ivec2 size) {
     if (SHADOW_HISTORY == 0) {
-        return imageLoad(shadow_image, pixel);
+        vec4 texel = imageLoad(shadow_image, pixel);
+        return Shadow(texel, texel.b > 0.0 ? pixel_colors(pixel, size, texel) : ShadowColors(0.0));
     }
     HistoryPixel history = load_history(pixel, size, 0u);
-    return vec4(history.shadow, sign(history.frames), history.frames * float(SHADOW_RAYS));
+    return Shadow(vec4(history.shadow, sign(history.frames), history.frames * float(SHADOW_RAYS)),
+                  history.colors);
+}
+
+// Puts a pixel with light into a place of the patch.
+void put_pixel(int place, ivec2 pixel, ivec2 size, vec3 position, Shadow shadow) {
+    ShadowColors colors = shadow.colors;
+    vec4 greens = vec4(colors[0].g, colors[1].g, colors[2].g, colors[3].g);
+    if (shadow.texel.r < 1.0) {
+        any_is_hidden = true;
+    }
+    if (colors != ShadowColors(greens.xxx, greens.yyy, greens.zzz, greens.www)) {
+        any_is_colored = true;
+    }
+    vec2 hidden = vec2(1.0 - shadow.texel.r, shadow.texel.g);
+    patch_texels[place] = vec4(position, uintBitsToFloat(packHalf2x16(hidden)));
+    patch_normals[place] = pack_normal(load_normal(pixel, position));
+    patch_rays[place] = packUnorm4x8(greens);
+    patch_colors[place] = pack_colors(colors);
 }
 
 void load_patch(ivec2 corner, ivec2 size) {
+    any_is_hidden = false;
+    any_is_colored = false;
+    barrier();
     for (int i = int(gl_LocalInvocationIndex); i < PATCH * PATCH; i += 64) {
         ivec2 pixel = corner + ivec2(i % PATCH, i / PATCH);
-        vec3 position = vec3(0.0);
-        vec4 shadow = vec4(0.0);
-        uint normal = 0u;
+        vec3 position;
+        patch_normals[i] = 0u;
         if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size)) && load_position(pixel, size,
                                                                                                   position)) {
-            shadow = load_shadow(pixel, size);
-            uint word = pack_normal(load_normal(pixel, position));
-            normal = shadow.b > 0.0 ? word : 0u;
+            Shadow shadow = load_shadow(pixel, size);
+            if (shadow.texel.b > 0.0) {
+                put_pixel(i, pixel, size, position, shadow);
+            }
         }
-        patch_texels[i] = vec4(position, uintBitsToFloat(packHalf2x16(shadow.rg)));
-        patch_normals[i] = normal;
     }
     barrier();
-}
-
-// What arrives at a pixel of the patch, and the width of its penumbra.
-vec2 patch_shadow(int i) {
-    return unpackHalf2x16(floatBitsToUint(patch_texels[i].w));
 }
 
 // A pixel of the patch to which its neighbours are compared.
@@ -81,69 +112,70 @@ struct Center {
     float plane_scale;
 };
 
-// How much a pixel of the patch counts as of the same surface.
-float likeness_of(Center center, int i) {
-    return likeness(patch_texels[i].xyz - center.position, unpack_normal(patch_normals[i]), center.normal,
-                    center.plane_scale);
+// How much a pixel of the patch counts as of the same surface, times the exponential of `exponent`.
+float weight_of(Center center, int i, vec3 offset, float exponent) {
+    return likeness(offset, unpack_normal(patch_normals[i]), center.normal, center.plane_scale, exponent);
 }
 
 // The width of the penumbra that a pixel is in, in x; less than 0 where no neighbour has a ray that is
-// hidden. In y how far pixels are apart.
+// hidden. In y how far pixels are apart. By every second neighbour, those that touch the pixel among them.
 vec2 search(Center center) {
-    float hidden = 0.0;
-    float width = 0.0;
+    vec2 sum = vec2(0.0);
     float spacing = 3e38;
     for (int y = -REACH; y <= REACH; y++) {
-        for (int x = -REACH; x <= REACH; x++) {
+        for (int x = -REACH + 1 - (y & 1); x <= REACH; x += 2) {
             int i = center.place + y * PATCH + x;
             if (patch_normals[i] != 0u) {
-                vec2 shadow = patch_shadow(i);
-                float weight = exp(float(x * x + y * y) * (-0.5 / (SEARCH_WIDTH * SEARCH_WIDTH)))
-                    * likeness_of(center, i);
-                hidden += weight * (1.0 - shadow.x);
-                width += weight * shadow.y;
+                vec3 offset = patch_texels[i].xyz - center.position;
+                float exponent = float(x * x + y * y) * (0.5 / (SEARCH_WIDTH * SEARCH_WIDTH));
+                vec2 found = unpackHalf2x16(floatBitsToUint(patch_texels[i].w));
+                sum += weight_of(center, i, offset, exponent) * found;
                 if (abs(x) + abs(y) == 1) {
-                    spacing = min(spacing, distance(patch_texels[i].xyz, center.position));
+                    spacing = min(spacing, length(offset));
                 }
             }
         }
     }
-    return vec2(hidden > 1e-6 ? width / hidden : -1.0, spacing);
+    return vec2(sum.x > 1e-6 ? sum.y / sum.x : -1.0, spacing);
 }
 
-// The mean of what arrives at a pixel and its neighbours, by a Gaussian of this standard deviation.
-float gathered(Center center, float deviation) {
-    float arrives = patch_shadow(center.place).x;
-    float sum = 1.0;
-    for (int y = -REACH; y <= REACH; y++) {
-        for (int x = -REACH; x <= REACH; x++) {
+// The mean of the colours of a pixel and its neighbours, by a Gaussian of this standard deviation over
+// `reach` pixels to each side.
+ShadowColors gathered(Center center, float deviation, int reach) {
+    ShadowColors colors = ShadowColors(0.0);
+    vec4 rays = vec4(0.0);
+    float scale = 0.5 / max(deviation * deviation, 1e-37);
+    for (int y = -reach; y <= reach; y++) {
+        for (int x = -reach; x <= reach; x++) {
             int i = center.place + y * PATCH + x;
-            if (patch_normals[i] != 0u && (x != 0 || y != 0)) {
-                vec3 offset = (patch_texels[i].xyz - center.position) / deviation;
-                float weight = exp(-0.5 * dot(offset, offset)) * likeness_of(center, i);
-                arrives += weight * patch_shadow(i).x;
-                sum += weight;
+            if (patch_normals[i] != 0u) {
+                vec3 offset = patch_texels[i].xyz - center.position;
+                float weight = weight_of(center, i, offset, dot(offset, offset) * scale);
+                if (any_is_colored) {
+                    colors += weight * unpack_colors(patch_colors[i]);
+                } else {
+                    rays += weight * unpackUnorm4x8(patch_rays[i]);
+                }
             }
         }
     }
-    return arrives / sum;
+    colors = any_is_colored ? colors : ShadowColors(rays.xxx, rays.yyy, rays.zzz, rays.www);
+    return colors / max(arealight_luminance(colors[1] + colors[3]), 1e-37);
 }
 
-// The part of a pixel's light that arrives; its texel of shadow_image.
-float arriving(vec4 shadow) {
-    if (SHADOW_FILTER == 0) {
-        return shadow.r;
-    }
+// The part of each channel of a pixel's light that arrives, by means over its neighbours.
+vec3 filtered(float rays, vec3 specular) {
     ivec2 place = ivec2(gl_LocalInvocationID.xy) + REACH;
     int i = place.y * PATCH + place.x;
     vec3 position = patch_texels[i].xyz;
     Center center = Center(i, position, unpack_normal(patch_normals[i]), plane_scale(position));
     vec2 found = search(center);
     if (found.x < 0.0) {
-        return 1.0;
+        return vec3(1.0);
     }
-    float deviation = max(PENUMBRA_PART * found.x, LEAST_WIDTH * found.y) * pow(shadow.a, -1.0 / 3.0);
-    return gathered(center, deviation);
+    float deviation = max(PENUMBRA_PART * found.x, LEAST_WIDTH * found.y) * pow(rays, -1.0 / 3.0);
+    int reach = int(ceil(min(MEAN_END * deviation / max(found.y, 1e-37), float(REACH))));
+    return arriving_by_means(gathered(center, deviation, reach), specular);
 }
 
 void main() {
@@ -157,9 +189,14 @@ void main() {
     }
     vec4 unshadowed = imageLoad(unshadowed_image, pixel);
     vec3 radiance = unshadowed.rgb;
-    vec4 shadow = load_shadow(pixel, size);
-    if (shadow.b > 0.0) {
-        radiance *= arriving(shadow);
+    Shadow shadow = load_shadow(pixel, size);
+    if (shadow.texel.b > 0.0) {
+        vec3 specular = specular_parts(pixel, size);
+        if (SHADOW_FILTER == 0) {
+            radiance *= arriving_by_chance(shadow.colors, radiance, specular);
+        } else if (any_is_hidden) {
+            radiance *= filtered(shadow.texel.a, specular);
+        }
     }
     if ((OUTPUT & OUTPUT_ADD) != 0) {
         if (unshadowed.a == 0.0) {

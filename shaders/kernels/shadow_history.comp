@@ -7,6 +7,7 @@
 // from the history by beyond it is change, and shortens the history.
 
 #include "shadow_resources.glsl"
+#include "shadow_colors.glsl"
 #include "shadow_history.glsl"
 #include "shadow_neighbours.glsl"
 
@@ -88,7 +89,7 @@ bool find_before(ivec2 pixel, ivec2 size, vec3 position, vec3 normal, out Before
 // What is known of a pixel's point from the frame before: the mean of those of the four pixels around its
 // place that are of its surface.
 HistoryPixel reprojected(Before before, ivec2 size) {
-    HistoryPixel mean = HistoryPixel(vec2(0.0), 0.0, vec3(0.0), vec3(0.0));
+    HistoryPixel mean = HistoryPixel(vec2(0.0), 0.0, vec3(0.0), vec3(0.0), ShadowColors(0.0));
     vec2 corner = floor(before.place - 0.5);
     vec2 part = before.place - 0.5 - corner;
     float sum = 0.0;
@@ -99,12 +100,14 @@ HistoryPixel reprojected(Before before, ivec2 size) {
             vec2 weights = mix(1.0 - part, part, vec2(step));
             mean.shadow += weights.x * weights.y * tap.shadow;
             mean.frames += weights.x * weights.y * tap.frames;
+            mean.colors += weights.x * weights.y * tap.colors;
             sum += weights.x * weights.y;
         }
     }
     float scale = sum > 1e-3 ? 1.0 / sum : 0.0;
     mean.shadow *= scale;
     mean.frames *= scale;
+    mean.colors *= scale;
     return mean;
 }
 
@@ -116,9 +119,10 @@ vec4 cubic_weights(float part) {
                       part + 4.0 * squares.x - 3.0 * squares.y, squares.y - squares.x);
 }
 
-// As what is known by the four pixels around, `mean`, by the sixteen around, which does not widen with every
-// frame; held between what the four have. The four's where some of the sixteen are of another surface.
-vec2 sharp_shadow(Before before, ivec2 size, vec2 mean) {
+// Makes what is known by the four pixels around, `mean`, that of the sixteen around, which does not widen with
+// every frame; held between what the four have. Leaves the four's where some of the sixteen are of another
+// surface.
+void sharpen(Before before, ivec2 size, inout HistoryPixel mean) {
     vec2 corner = floor(before.place - 0.5);
     vec2 part = before.place - 0.5 - corner;
     vec4 weights_x = cubic_weights(part.x);
@@ -126,19 +130,30 @@ vec2 sharp_shadow(Before before, ivec2 size, vec2 mean) {
     vec2 sum = vec2(0.0);
     vec2 least = vec2(3e38);
     vec2 most = vec2(0.0);
+    ShadowColors colors = ShadowColors(0.0);
+    ShadowColors least_colors = ShadowColors(vec3(3e38), vec3(3e38), vec3(3e38), vec3(3e38));
+    ShadowColors most_colors = ShadowColors(0.0);
     for (int i = 0; i < 16; i++) {
         ivec2 step = ivec2(i & 3, i >> 2);
         HistoryPixel tap;
         if (!load_before(before, ivec2(corner) + step - 1, size, tap)) {
-            return mean;
+            return;
         }
         sum += weights_x[step.x] * weights_y[step.y] * tap.shadow;
+        colors += weights_x[step.x] * weights_y[step.y] * tap.colors;
         if ((step.x == 1 || step.x == 2) && (step.y == 1 || step.y == 2)) {
             least = min(least, tap.shadow);
             most = max(most, tap.shadow);
+            for (int column = 0; column < 4; column++) {
+                least_colors[column] = min(least_colors[column], tap.colors[column]);
+                most_colors[column] = max(most_colors[column], tap.colors[column]);
+            }
         }
     }
-    return clamp(sum, least, most);
+    mean.shadow = clamp(sum, least, most);
+    for (int column = 0; column < 4; column++) {
+        mean.colors[column] = clamp(colors[column], least_colors[column], most_colors[column]);
+    }
 }
 
 void load_patch(ivec2 corner, ivec2 size) {
@@ -181,9 +196,8 @@ vec2 compared(int center, float rays) {
         for (int x = -REACH; x <= REACH; x++) {
             int i = center + y * PATCH + x;
             if (patch_normals[i] != 0u) {
-                float alike = likeness(patch_texels[i].xyz - position, unpack_normal(patch_normals[i]),
-                                       normal, scale);
-                float weight = exp(float(x * x + y * y) * (-0.5 / (WIDTH * WIDTH))) * alike;
+                float weight = likeness(patch_texels[i].xyz - position, unpack_normal(patch_normals[i]),
+                                        normal, scale, float(x * x + y * y) * (0.5 / (WIDTH * WIDTH)));
                 sums += weight * vec4(1.0, weight, patch_texels[i].w, unpackHalf2x16(patch_before[i]).x);
             }
         }
@@ -232,20 +246,21 @@ void main() {
     }
     ivec2 local = ivec2(gl_LocalInvocationID.xy);
     int center = (local.y + REACH + POOL) * PATCH + local.x + REACH + POOL;
-    HistoryPixel history = HistoryPixel(vec2(0.0), 0.0, vec3(0.0), vec3(0.0, 0.0, 1.0));
+    HistoryPixel history = HistoryPixel(vec2(0.0), 0.0, vec3(0.0), vec3(0.0, 0.0, 1.0), ShadowColors(0.0));
     if (patch_normals[center] != 0u) {
         vec3 position = patch_texels[center].xyz;
         vec3 normal = unpack_normal(patch_normals[center]);
         Before before;
         if (find_before(pixel, size, position, normal, before)) {
             history = reprojected(before, size);
-            history.shadow = sharp_shadow(before, size, history.shadow);
+            sharpen(before, size, history);
         }
         history.position = position;
         history.normal = normal;
-        vec2 now = imageLoad(shadow_image, pixel).rg;
+        vec4 now = imageLoad(shadow_image, pixel);
         float frames = history.frames > 0.0 ? frames_of(local, history.frames) : 1.0;
-        history.shadow = mix(history.shadow, now, 1.0 / frames);
+        history.shadow = mix(history.shadow, now.rg, 1.0 / frames);
+        history.colors += (pixel_colors(pixel, size, now) - history.colors) * (1.0 / frames);
         history.frames = frames;
     }
     store_history(pixel, size, history);

@@ -1,19 +1,21 @@
 #ifndef SHADOW_HISTORY_GLSL
 #define SHADOW_HISTORY_GLSL
 
-// What is kept of shadows from frame to frame. The including kernel has shadow_resources.glsl.
+// What is kept of shadows from frame to frame. The including kernel has shadow_resources.glsl
+// and shadow_colors.glsl.
 
 #include "shadow_neighbours.glsl"
 
 // Words of the head, and of a pixel.
 const uint HISTORY_HEAD = 40u;
-const uint HISTORY_PIXEL = 6u;
+const uint HISTORY_PIXEL = 10u;
 
 // First for frames of even and of odd seeds each a head of 20 words: the matrix from positions to clip space,
 // by columns, and what is added to positions of that frame so that they are relative to the origin of the one
 // before; then for even and for odd ones each a record of every pixel:
 //
-//     what arrives and the penumbra's width, as halves; of how many frames, 0 for none; position; normal
+//     what arrives and the penumbra's width, as halves; of how many frames, 0 for none; position; normal;
+//     pack_colors
 layout(set = 0, binding = HISTORY_BINDING, std430) buffer ShadowHistory {
     uint shadow_history[];
 };
@@ -23,6 +25,7 @@ struct HistoryPixel {
     float frames; // that these are the mean of
     vec3 position;
     vec3 normal;  // unit
+    ShadowColors colors;
 };
 
 // Where the record of a pixel is, of this frame (0) or of the one before (1).
@@ -37,9 +40,11 @@ HistoryPixel load_history(ivec2 pixel, ivec2 size, uint before) {
     vec3 position = uintBitsToFloat(uvec3(shadow_history[at + 2u], shadow_history[at + 3u],
                                           shadow_history[at + 4u]));
     vec3 normal = 2.0 * unpackUnorm4x8(shadow_history[at + 5u]).xyz - 1.0;
+    uvec4 colors = uvec4(shadow_history[at + 6u], shadow_history[at + 7u], shadow_history[at + 8u],
+                         shadow_history[at + 9u]);
     return HistoryPixel(unpackHalf2x16(shadow_history[at]), uintBitsToFloat(shadow_history[at + 1u]),
                         position,
-                        arealight_normalize_or(normal, vec3(0.0, 0.0, 1.0)));
+                        arealight_normalize_or(normal, vec3(0.0, 0.0, 1.0)), unpack_colors(colors));
 }
 
 void store_history(ivec2 pixel, ivec2 size, HistoryPixel history) {
@@ -51,6 +56,10 @@ void store_history(ivec2 pixel, ivec2 size, HistoryPixel history) {
     shadow_history[at + 3u] = position.y;
     shadow_history[at + 4u] = position.z;
     shadow_history[at + 5u] = pack_normal(history.normal);
+    uvec4 colors = pack_colors(history.colors);
+    for (uint i = 0u; i < 4u; i++) {
+        shadow_history[at + 6u + i] = colors[i];
+    }
 }
 
 // The vector at a word of the head of this frame (0) or of the one before (1).

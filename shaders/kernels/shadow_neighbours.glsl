@@ -3,10 +3,9 @@
 
 // What the kernels that take means of shadows over pixels have in common.
 
-// Neighbours count as of the same surface by this part of the camera's distance out of its plane, and by this
+// Neighbours count as of the same surface by this part of the camera's distance out of its plane, and by a
 // power of their normals' cosine.
 const float PLANE_PART = 0.004;
-const float NORMAL_POWER = 32.0;
 
 // What likeness takes an offset out of the plane times, for a surface at a position.
 float plane_scale(vec3 position) {
@@ -14,10 +13,15 @@ float plane_scale(vec3 position) {
 }
 
 // How much a neighbour at an offset, with its normal, counts as of the surface of this normal and
-// plane_scale.
-float likeness(vec3 offset, vec3 neighbour, vec3 normal, float plane_scale) {
-    return exp(-abs(dot(normal, offset)) * plane_scale)
-        * pow(clamp(dot(normal, neighbour), 0.0, 1.0), NORMAL_POWER);
+// plane_scale, over e to the power of `exponent`.
+float likeness(vec3 offset, vec3 neighbour, vec3 normal, float plane_scale, float exponent) {
+    // The cosine to the power of 32
+    float alike = max(dot(normal, neighbour), 0.0);
+    alike *= alike;
+    alike *= alike;
+    alike *= alike;
+    alike *= alike;
+    return exp(-abs(dot(normal, offset)) * plane_scale - exponent) * alike * alike;
 }
 
 // A unit normal in a word, which is not 0; and out of it.

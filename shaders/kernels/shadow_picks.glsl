@@ -9,7 +9,9 @@ const bool HAS_SHADOWS = SHADOW_RAYS > 0;
 // The most rays of a pixel: ShadowOptions::MOST_RAYS in Rust (a test compares them).
 const int MOST_SHADOW_RAYS = 4;
 
-// Of each pixel SHADOW_RAYS words: the light's index in its buffer, and these bits.
+// Of each pixel first a word, the part of the specular lobes in each channel of the radiance, from 0 to 1,
+// as unorms of 10 bits. Then of each ray two: the light's index in its buffer with these bits, and
+// pack_color of the picked light's colour over that of all that the lobe reflects, both of luminance 1.
 layout(set = 0, binding = PICKS_BINDING, std430) PICKS_ACCESS buffer ShadowPicks {
     uint shadow_picks[];
 };
@@ -19,9 +21,31 @@ const uint PICK_SHAPE = 0x40000000u;    // a disk, sphere or tube, else a polygo
 const uint PICK_INDEX = 0x3fffffffu;
 const uint NO_PICK = 0xffffffffu;
 
-// Where the picks of a pixel begin.
-uint first_pick(ivec2 pixel, ivec2 size) {
-    return uint(SHADOW_RAYS) * uint(pixel.y * size.x + pixel.x);
+// Where the word of a pixel is.
+uint pixel_picks(ivec2 pixel, ivec2 size) {
+    return uint(1 + 2 * SHADOW_RAYS) * uint(pixel.y * size.x + pixel.x);
+}
+
+// Where the words of a ray of the pixel are, whose word is at `pixel_picks`.
+uint ray_pick(uint pixel_picks, int ray) {
+    return pixel_picks + 1u + 2u * uint(ray);
+}
+
+uint pack_tens(vec3 numbers) {
+    uvec3 bits = uvec3(clamp(numbers + 0.5, 0.0, 1023.5));
+    return bits.x | bits.y << 10u | bits.z << 20u;
+}
+vec3 unpack_tens(uint word) {
+    return vec3(word & 1023u, word >> 10u & 1023u, word >> 20u & 1023u);
+}
+
+// Three numbers from 0 to 63 in a word, by their roots: within .004 + .8 %, 0 and 1 exactly.
+uint pack_color(vec3 color) {
+    return pack_tens(128.0 * sqrt(color));
+}
+vec3 unpack_color(uint word) {
+    vec3 root = unpack_tens(word) * 0.0078125;
+    return root * root;
 }
 
 #endif

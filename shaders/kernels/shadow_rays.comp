@@ -131,8 +131,8 @@ vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec2 rand
 
 vec4 pixel_shadow(ivec2 pixel, ivec2 size) {
     vec3 position;
-    uint first = first_pick(pixel, size);
-    if (!load_position(pixel, size, position) || shadow_picks[first] == NO_PICK) {
+    uint picks = pixel_picks(pixel, size);
+    if (!load_position(pixel, size, position) || shadow_picks[ray_pick(picks, 0)] == NO_PICK) {
         return vec4(0.0);
     }
     ArealightSurface surface = load_seen_surface(pixel, position);
@@ -144,11 +144,14 @@ vec4 pixel_shadow(ivec2 pixel, ivec2 size) {
     vec3 origin = arealight_ray_origin(position, normal, position_step(pixel, size, position));
     float alpha = surface.roughness * surface.roughness;
     vec2 sum = vec2(0.0);
+    uint hidden = 0u;
     for (int ray = 0; ray < SHADOW_RAYS; ray++) {
         vec2 random = arealight_sequence_2d(uvec2(pixel), constants.seed * uint(SHADOW_RAYS) + uint(ray));
-        sum += traced(shadow_picks[first + uint(ray)], point, alpha, origin, random);
+        vec2 found = traced(shadow_picks[ray_pick(picks, ray)], point, alpha, origin, random);
+        sum += found;
+        hidden |= found.x > 0.0 ? 0u : 1u << uint(ray);
     }
-    return vec4(sum / float(SHADOW_RAYS), 1.0, float(SHADOW_RAYS));
+    return vec4(sum / float(SHADOW_RAYS), float(1u + hidden), float(SHADOW_RAYS));
 }
 
 void main() {

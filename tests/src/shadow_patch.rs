@@ -158,7 +158,7 @@ impl ShadowPatch {
         let shapes = host.storage_buffer("shapes", &packed.shapes).unwrap();
         let nodes = host.storage_buffer("nodes", &blockers.nodes).unwrap();
         let triangles = host.storage_buffer("triangles", &blockers.triangles).unwrap();
-        let picks = vec![0_u32; (SIDE * SIDE * options.shadow_rays) as usize];
+        let picks = vec![0_u32; shade.picks_size([SIDE; 2]) as usize / 4];
         let picks = host.storage_buffer("picks", &picks).unwrap();
         let tiles = shade.tile_memory([SIDE; 2]).map(|memory| {
             let lists = host.buffer("tile lists", memory.size, memory.usage, Location::Device).unwrap();

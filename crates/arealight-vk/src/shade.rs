@@ -144,8 +144,7 @@ impl ShadePass {
 
     /// How many bytes [`ShadeResources::picks`] needs for images of `size` pixels.
     pub fn picks_size(&self, size: [u32; 2]) -> vk::DeviceSize {
-        4 * vk::DeviceSize::from(self.options.shadow_rays)
-            * size.map(vk::DeviceSize::from).iter().product::<u64>()
+        plan::shadow_picks_size(self.options.shadow_rays, size)
     }
 
     /// The layout that the host allocates a descriptor set with.

@@ -229,11 +229,18 @@ pub enum ShadowHistory {
     MotionVectors = 2,
 }
 
+/// Bytes of the buffer of what shadow rays are picked for, for images of `size` pixels: a word of each pixel,
+/// and two of each of its `rays`; 0 without rays.
+pub fn shadow_picks_size(rays: u32, size: [u32; 2]) -> u64 {
+    let words = if rays == 0 { 0 } else { 1 + 2 * u64::from(rays) };
+    4 * words * size.map(u64::from).iter().product::<u64>()
+}
+
 /// Words at the beginning of the buffer that keeps shadows from frame to frame: for frames of even and of odd
 /// seeds a half each.
 pub const SHADOW_HISTORY_HEAD: usize = 40;
 /// Words of a pixel in that buffer, of one frame; it has two.
-pub const SHADOW_HISTORY_PIXEL: usize = 6;
+pub const SHADOW_HISTORY_PIXEL: usize = 10;
 
 /// Bytes of the buffer that keeps shadows from frame to frame, for images of `size` pixels. It holds zeros
 /// before the first frame.

@@ -53,6 +53,7 @@ mod rescattered;
 mod samples;
 mod self_test;
 mod shading;
+mod shadow_grain;
 mod shadow_history;
 mod shadow_levels;
 mod shadow_mistakes;

@@ -12,6 +12,9 @@ use glam::{DVec2, DVec3, Vec3};
 
 const RAYS: u32 = 4;
 
+/// Of linear Rec. 709 colour.
+const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
+
 pub(crate) fn options() -> ShadeOptions {
     ShadeOptions { shadow_rays: RAYS, ..ShadeOptions::default() }
 }
@@ -142,8 +145,8 @@ fn half_of_every_symmetric_light_arrives_where_half_of_it_is_hidden() {
     }
 }
 
-/// What is visible of a quad by the oracle, as a part of its unshadowed light.
-fn exact(light: &Light, patch: &ShadowPatch) -> f64 {
+/// What a patch reflects of a quad by the oracle: of its visible parts, and of all of it.
+fn exact(light: &Light, patch: &ShadowPatch) -> [DVec3; 2] {
     let table = arealight::LightTable::ggx();
     let whole = RelativeLight::new(light, DVec3::ZERO);
     let blockers: Vec<_> = patch.blockers.iter().map(|t| t.map(Vec3::as_dvec3)).collect();
@@ -152,9 +155,8 @@ fn exact(light: &Light, patch: &ShadowPatch) -> f64 {
         let part = RelativeLight { vertices, ..whole.clone() };
         ltc_on(Quality::default(), &table, &surface, DVec3::Z, patch.view.as_dvec3(), &part)
     };
-    let weights = DVec3::new(0.2126, 0.7152, 0.0722);
-    let visible: DVec3 = visible_parts(&whole.vertices, &blockers).into_iter().map(of).sum();
-    visible.dot(weights) / of(whole.vertices.clone()).dot(weights)
+    let visible = visible_parts(&whole.vertices, &blockers).into_iter().map(of).sum();
+    [visible, of(whole.vertices.clone())]
 }
 
 #[test]
@@ -169,13 +171,78 @@ fn what_arrives_of_a_quad_is_what_the_oracle_sees_of_it() {
     for (surface, material, view) in surfaces() {
         let patch = ShadowPatch { material, view, lights: vec![light.clone()], blockers: blockers.clone() };
         let found = patch.run(&passes).mean();
-        let exact = exact(&light, &patch);
+        let [exact, whole] = exact(&light, &patch).map(|radiance| radiance.dot(LUMINANCE));
+        let exact = exact / whole;
         assert!((0.05..0.95).contains(&exact), "{surface}: {exact}, the case says nothing");
         largest = largest.max((found - exact).abs());
         // As above
         assert!((found - exact).abs() < 4e-3, "{surface}: {found} and {exact}");
     }
     println!("largest error {largest:.1e}");
+}
+
+/// A brown, shiny surface under a red light that is partly hidden and a blue one that is not, with what hides
+/// the one, or all.
+fn of_many_colors(is_dark: bool) -> ShadowPatch {
+    let material = Material {
+        base_color: Vec3::new(0.6, 0.3, 0.2),
+        roughness: 0.4,
+        dielectric_f0: Vec3::splat(0.08),
+        ..Material::default()
+    };
+    let colored = |radiance: Vec3, light| Light { radiance, ..light };
+    let lights = vec![
+        colored(Vec3::new(1.5, 0.3, 0.05), flat(1.5, &[[0.3, -0.6], [0.3, 0.6], [1.5, 0.6], [1.5, -0.6]])),
+        colored(Vec3::new(0.1, 0.3, 2.0), flat(2.0, &[[-1.2, -0.6], [-1.2, 0.6], [-0.2, 0.6], [-0.2, -0.6]])),
+    ];
+    let at = |x: f32, y: f32| Vec3::new(x, y, 0.5);
+    let some = rectangle([at(0.2, -0.15), at(0.6, -0.15), at(0.6, 0.1), at(0.2, 0.1)]);
+    let all = rectangle([at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
+    let blockers = if is_dark { all } else { some };
+    ShadowPatch { material, view: Vec3::new(-1.0, 0.0, 1.2), lights, blockers }
+}
+
+#[test]
+fn each_channel_gets_what_arrives_of_each_light_and_lobe() {
+    let Some(engine) = TestEngine::new() else { return };
+    let patch = of_many_colors(false);
+    let [visible, whole] = patch
+        .lights
+        .iter()
+        .map(|light| exact(light, &patch))
+        .fold([DVec3::ZERO; 2], |[visible, whole], [one_visible, one_whole]| {
+            [visible + one_visible, whole + one_whole]
+        });
+    let exact = visible / whole;
+    assert!(exact.max_element() - exact.min_element() > 0.2, "{exact}: the case says nothing");
+    for filter in [ShadowFilter::Off, ShadowFilter::Gather] {
+        let found = patch.run(&PatchPasses::new(&engine, options(), filter));
+        let sum: DVec3 = found.radiance.iter().map(|radiance| radiance.as_dvec3()).sum();
+        let part = sum / found.radiance.len() as f64 / found.unshadowed[0].as_dvec3();
+        let error = (part - exact).abs().max_element();
+        println!("{filter:?}: {part}, {exact}");
+        // As for one light; a ray of the red one is three times as much of its channel
+        assert!(error < 0.012, "{filter:?}: {part} and {exact}");
+        // The twin: one factor for all channels and lobes
+        let error = (DVec3::splat(found.mean()) - exact).abs().max_element();
+        assert!(error > 0.1, "{} and {exact}", found.mean());
+    }
+}
+
+#[test]
+fn means_leave_nothing_in_the_dark_and_all_in_the_light() {
+    let Some(engine) = TestEngine::new() else { return };
+    let passes = PatchPasses::new(&engine, options(), ShadowFilter::Gather);
+    let largest = |radiance: &[Vec3]| radiance.iter().fold(Vec3::ZERO, |a, b| a.max(b.abs()));
+    let dark = of_many_colors(true).run(&passes);
+    // A sum and its quotient in float32
+    assert!(largest(&dark.radiance).max_element() < 1e-6 * dark.unshadowed[0].min_element());
+    let lit = ShadowPatch { blockers: plate_over_half(-0.5), ..of_many_colors(true) }.run(&passes);
+    assert_eq!(lit.radiance, lit.unshadowed);
+    // The twin: by chance each ray takes its own light away, and their noise has colours
+    let passes = PatchPasses::new(&engine, options(), ShadowFilter::Off);
+    let dark = of_many_colors(true).run(&passes);
+    assert!(largest(&dark.radiance).max_element() > 0.01 * dark.unshadowed[0].min_element());
 }
 
 #[test]
@@ -258,6 +325,49 @@ fn the_filter_takes_the_noise_and_leaves_the_mean() {
     assert!((mean - plain_mean).abs() < 0.01, "{mean} and {plain_mean}");
     // All pixels are at one place: the search's weights alone, a Gaussian of 3 pixels, would leave .05
     assert!(filtered < 0.05, "{filtered}");
+}
+
+/// A prism of so many sides about an axis: faces outwards.
+fn prism([p0, p1]: [DVec3; 2], radius: f64, sides: u32) -> Light {
+    let axis = (p1 - p0).normalize();
+    let (u, v) = axis.any_orthonormal_pair();
+    let at = |center: DVec3, side: u32| {
+        let angle = std::f64::consts::TAU * f64::from(side % sides) / f64::from(sides);
+        center + radius * (angle.cos() * u + angle.sin() * v)
+    };
+    let mut mesh = LightShape::default();
+    mesh.add_face(&(0..sides).map(|side| at(p1, side)).collect::<Vec<_>>());
+    mesh.add_face(&(0..sides).rev().map(|side| at(p0, side)).collect::<Vec<_>>());
+    for side in 0..sides {
+        mesh.add_face(&[at(p0, side), at(p0, side + 1), at(p1, side + 1), at(p1, side)]);
+    }
+    light(mesh)
+}
+
+#[test]
+fn rays_go_to_the_flat_ends_of_tubes() {
+    let Some(engine) = TestEngine::new() else { return };
+    let passes = PatchPasses::new(&engine, options(), ShadowFilter::Off);
+    let (_, material, view) = surfaces().remove(0);
+    let ends = [DVec3::new(1.0, 0.0, 1.0), DVec3::new(1.3, 0.0, 1.9)];
+    let radius = 0.4;
+    // Before the end that is seen, and little of the side
+    let middle = 0.5 * ends[0].as_vec3();
+    let corner = |x: f32, y: f32| middle + x * Vec3::new(0.9, 0.0, -0.5) + y * Vec3::Y;
+    let blockers =
+        rectangle([corner(-0.1, -0.16), corner(0.16, -0.16), corner(0.16, 0.16), corner(-0.1, 0.16)]);
+    let arrives = |light| {
+        let patch = ShadowPatch { material, view, lights: vec![light], blockers: blockers.clone() };
+        patch.run(&passes).mean()
+    };
+    let tube = |ends_are| light(LightShape::Tube { p0: ends[0], p1: ends[1], radius, ends: ends_are });
+    let exact = arrives(prism(ends, radius, 24));
+    let [flat, open] = [TubeEnds::Flat, TubeEnds::Open].map(|ends| arrives(tube(ends)));
+    println!("{flat} and {open} of {exact}");
+    // Of the half of the end before the side
+    assert!((flat - exact).abs() < 0.06, "{flat} of {exact}");
+    // The twin: the side alone
+    assert!((open - exact).abs() > 0.15, "{open} of {exact}");
 }
 
 #[test]

@@ -80,8 +80,8 @@ const BOUND: [(&str, &str); 19] = [
     ),
     (
         "shadow_picks",
-        "u32[]: of each pixel ShadeOptions::shadow_rays words, a light and a lobe for each ray; written only \
-         with shadow rays, else bind any buffer",
+        "plan::shadow_picks_size bytes: of each pixel the specular lobes' part, and of each ray a light, a lobe \
+         and a colour; written only with shadow rays, else bind any buffer",
     ),
     ("light_counts", "LightCounts; read only with ShadeOptions::light_counts, else bind any buffer"),
     ("lobe_horizons", "LightTable::lobe_horizons: twelve floats per cell"),
@@ -93,8 +93,8 @@ const BOUND: [(&str, &str); 19] = [
     ),
     (
         "shadow_image",
-        "of the light of a pixel: the part that arrives, the penumbra's width, 1 where there is light, how \
-         many rays (rgba16f)",
+        "of the light of a pixel: the part that arrives, the penumbra's width, from 1 on where there is light, \
+         how many rays (rgba16f)",
     ),
     ("nodes", "Blockers::nodes: GpuBvhNode[]"),
     ("blocker_triangles", "Blockers::triangles: vec4[3][], in w of the first the bits of a number"),

@@ -5,6 +5,7 @@ use crate::differences::diverging;
 use crate::failure::Failure;
 use crate::memory;
 use crate::output::{self, print};
+use crate::picture::{srgb_from_linear, tone_map};
 use arealight_cases::images::Images;
 use arealight_oracle::texture::Texture;
 use glam::DVec3;
@@ -15,8 +16,9 @@ use std::process::ExitCode;
 /// Compare two pictures of radiance, such as one of ours with its reference.
 ///
 /// Both are OpenEXR files of one size. The errors are of A against B: the root of the mean squared difference
-/// over the mean of B, the ratio of the means, and the largest difference. For example: arealight compare
-/// ours.exr reference.exr -o map.png
+/// over the mean of B, the ratio of the means, and the largest difference; and of what a screen shows, in
+/// levels of 255, the root of the mean squared difference of the means of 4 x 4 pixels, which an eye sees
+/// where it does not see noise. For example: arealight compare ours.exr reference.exr -o map.png
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The picture to judge (.exr)
@@ -31,6 +33,9 @@ pub struct Arguments {
     /// The difference that has the strongest colour of the map, over the mean of B
     #[arg(long, default_value_t = 0.25, requires = "output")]
     scale: f64,
+    /// Exposure of what a screen shows, in stops
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
+    exposure: f32,
     /// Exit with 1 where the error is larger than this: the root of the mean squared difference over the mean
     #[arg(long, value_parser = super::eval::tolerance)]
     tolerance: Option<f64>,
@@ -50,11 +55,39 @@ struct Difference {
     largest: (f64, [usize; 2]),
     /// Mean of the second picture.
     mean: f64,
+    /// Of what a screen shows: [`levels`].
+    levels: [f64; 2],
+}
+
+/// Pixels to a side of the blocks whose means are compared on a screen.
+const BLOCK: usize = 4;
+
+/// The root of the mean squared difference of what a screen shows at an exposure, in levels of 255: of the
+/// means of blocks; and of that the part that is not alike in all channels.
+fn levels(judged: &Texture, truth: &Texture, stops: f32) -> [f64; 2] {
+    let shown = |texel: DVec3| {
+        let mapped = tone_map(texel.as_vec3() * stops.exp2()).to_array();
+        DVec3::from_array(mapped.map(|channel| f64::from(srgb_from_linear(channel))))
+    };
+    let columns = truth.width().div_ceil(BLOCK);
+    let mut blocks = vec![(DVec3::ZERO, 0.0); columns * truth.height().div_ceil(BLOCK)];
+    for (index, (a, b)) in judged.texels().iter().zip(truth.texels()).enumerate() {
+        let (x, y) = (index % truth.width(), index / truth.width());
+        let (sum, count) = &mut blocks[y / BLOCK * columns + x / BLOCK];
+        *sum += shown(*a) - shown(*b);
+        *count += 1.0;
+    }
+    let squares = blocks.iter().fold([0.0; 2], |[all, color], (sum, count)| {
+        let apart = *sum / *count;
+        let grey = DVec3::splat(apart.element_sum() / 3.0);
+        [all + apart.length_squared(), color + (apart - grey).length_squared()]
+    });
+    squares.map(|square| (square / (3 * blocks.len()) as f64).sqrt())
 }
 
 impl Difference {
     /// Of pictures of one size.
-    fn new(judged: &Texture, truth: &Texture) -> Self {
+    fn new(judged: &Texture, truth: &Texture, stops: f32) -> Self {
         let pairs = || judged.texels().iter().zip(truth.texels());
         let count = 3.0 * pairs().count() as f64;
         let mean = |sum: f64| sum / count;
@@ -73,12 +106,13 @@ impl Difference {
             ratio: mean(judged.texels().iter().map(|texel| texel.element_sum()).sum()) / average,
             largest: (largest.0, [largest.1 % width, largest.1 / width]),
             mean: average,
+            levels: levels(judged, truth, stops),
         }
     }
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let Arguments { judged, truth, output, scale, tolerance, json } = arguments;
+    let Arguments { judged, truth, output, scale, exposure, tolerance, json } = arguments;
     if let Some(path) = output {
         if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
             let message = format!("{}: the file's name must end in .png", path.display());
@@ -98,7 +132,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         let message = format!("has {x} x {y} pixels, and {} has {w} x {h}", truth.display());
         return Err(Failure::input(judged, message));
     }
-    let found = Difference::new(&a, &b);
+    let found = Difference::new(&a, &b, *exposure);
     if found.mean.is_nan() || found.mean <= 0.0 {
         return Err(Failure::input(truth, "is black on average: an error has nothing to be relative to"));
     }
@@ -107,18 +141,19 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         map(&a, &b, scale * found.mean).save_png(path)?;
         eprintln!("wrote {}", path.display());
     }
-    let Difference { error, ratio, largest: (largest, [x, y]), mean } = found;
+    let Difference { error, ratio, largest: (largest, [x, y]), mean, levels: [levels, color] } = found;
     let text = if *json {
         let value = json!({
             "rmse_over_mean": error, "mean_ratio": ratio, "largest": largest, "largest_at": [x, y],
-            "mean": mean,
+            "mean": mean, "levels": levels, "levels_of_color": color,
             "output": output,
         });
         format!("{value:#}\n")
     } else {
         format!(
             "RMSE / mean    {:.3} %\nmean / mean    {ratio:.4}\nlargest        {largest:.3e} at pixel ({x}, \
-            {y}); the mean is {mean:.3e}\n",
+            {y}); the mean is {mean:.3e}\nlevels of 255  {levels:.2} in blocks of {BLOCK} x {BLOCK}, of them \
+            {color:.2} of colour\n",
             100.0 * error
         )
     };
@@ -147,10 +182,31 @@ mod tests {
     fn errors_are_relative_to_the_second_picture() {
         let picture = |texels: [f64; 4]| Texture::new(2, 2, texels.map(DVec3::splat).to_vec()).unwrap();
         let truth = picture([1.0, 2.0, 3.0, 2.0]);
-        let same = Difference::new(&truth, &truth);
+        let same = Difference::new(&truth, &truth, 0.0);
         assert_eq!((same.error, same.ratio, same.largest), (0.0, 1.0, (0.0, [0, 0])));
-        let other = Difference::new(&picture([1.0, 2.0, 5.0, 2.0]), &truth);
+        assert_eq!(same.levels, [0.0; 2]);
+        let other = Difference::new(&picture([1.0, 2.0, 5.0, 2.0]), &truth, 0.0);
         // One of four pixels is off by 2, over a mean of 2
         assert_eq!((other.error, other.ratio, other.largest), (0.5, 1.25, (2.0, [0, 1])));
+    }
+
+    #[test]
+    fn levels_are_of_blocks_and_colours_apart() {
+        let picture = |odd: DVec3, even: DVec3| {
+            let texels = (0..64).map(|i| if (i + i / 8) % 2 == 0 { even } else { odd });
+            Texture::new(8, 8, texels.collect()).unwrap()
+        };
+        let grey = DVec3::splat(0.1);
+        let truth = picture(grey, grey);
+        // Noise that the blocks' means have not; twice as much in each channel; in one alone
+        let [noise, color] = levels(&picture(grey * 1.05, grey * 0.95), &truth, 0.0);
+        assert!(noise < 1.0 && color < 0.1, "{noise}, {color}");
+        let [all, color] = levels(&picture(grey * 2.0, grey * 2.0), &truth, 0.0);
+        assert!(all > 30.0 && color < 1e-9, "{all}, {color}");
+        let red = DVec3::new(0.2, 0.1, 0.1);
+        let [all, color] = levels(&picture(red, red), &truth, 0.0);
+        assert!((color / all - (2.0_f64 / 3.0).sqrt()).abs() < 0.02, "{all}, {color}");
+        // A stop more shows more
+        assert!(levels(&picture(red, red), &truth, 1.0)[0] > all);
     }
 }
