@@ -184,12 +184,7 @@ fn what_arrives_of_a_quad_is_what_the_oracle_sees_of_it() {
 /// A brown, shiny surface under a red light that is partly hidden and a blue one that is not, with what hides
 /// the one, or all.
 fn of_many_colors(is_dark: bool) -> ShadowPatch {
-    let material = Material {
-        base_color: Vec3::new(0.6, 0.3, 0.2),
-        roughness: 0.4,
-        dielectric_f0: Vec3::splat(0.08),
-        ..Material::default()
-    };
+    let material = Material { base_color: Vec3::new(0.6, 0.3, 0.2), roughness: 0.4, ..Material::default() };
     let colored = |radiance: Vec3, light| Light { radiance, ..light };
     let lights = vec![
         colored(Vec3::new(1.5, 0.3, 0.05), flat(1.5, &[[0.3, -0.6], [0.3, 0.6], [1.5, 0.6], [1.5, -0.6]])),
