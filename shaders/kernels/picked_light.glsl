@@ -18,7 +18,7 @@ struct PickedLight {
     uint end;
     bool is_mesh;
     bool two_sided;
-    vec3 cap;      // of a tube, the center of the flat end that the point sees beside its side, from the point
+    vec3 cap;      // of a tube, the center of the flat end that is seen beside its side, from the point
     vec3 cap_axis; // along the tube, as long as its radius; zero where there is no such end
 };
 

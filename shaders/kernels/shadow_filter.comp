@@ -39,8 +39,8 @@ const float LEAST_WIDTH = 2.0;
 // The mean ends at so many standard deviations.
 const float MEAN_END = 2.5;
 
-// What a workgroup knows of its pixels and those around them: the position, and in w (the part that is hidden,
-// the penumbra's width times that) as halves.
+// What a workgroup knows of its pixels and those around them: the position, and in w (the part that is
+// hidden, the penumbra's width times that) as halves.
 shared vec4 patch_texels[PATCH * PATCH];
 // The normal; 0 where there is no light.
 shared uint patch_normals[PATCH * PATCH];

@@ -119,9 +119,9 @@ vec4 cubic_weights(float part) {
                       part + 4.0 * squares.x - 3.0 * squares.y, squares.y - squares.x);
 }
 
-// Makes what is known by the four pixels around, `mean`, that of the sixteen around, which does not widen with
-// every frame; held between what the four have. Leaves the four's where some of the sixteen are of another
-// surface.
+// Makes what is known by the four pixels around, `mean`, that of the sixteen around, which does not widen
+// with every frame; held between what the four have. Leaves the four's where some of the sixteen are of
+// another surface.
 void sharpen(Before before, ivec2 size, inout HistoryPixel mean) {
     vec2 corner = floor(before.place - 0.5);
     vec2 part = before.place - 0.5 - corner;
