@@ -324,7 +324,7 @@ fn the_filter_takes_the_noise_and_leaves_the_mean() {
 
 /// A prism of so many sides about an axis: faces outwards.
 fn prism([p0, p1]: [DVec3; 2], radius: f64, sides: u32) -> Light {
-    let axis = (p1 - p0).normalize();
+    let axis = (p1 - p0).normalize_or(DVec3::Z);
     let (u, v) = axis.any_orthonormal_pair();
     let at = |center: DVec3, side: u32| {
         let angle = std::f64::consts::TAU * f64::from(side % sides) / f64::from(sides);
