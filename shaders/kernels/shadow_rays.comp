@@ -91,13 +91,16 @@ vec3 geometric_normal(ivec2 pixel, ivec2 size, ArealightSurface surface) {
     return dot(normal, surface.view) < 0.0 ? -normal : normal;
 }
 
-// By how much a position may be wrong beyond its own rounding: that of a unit in the last place of depth.
+// By how much a position may be wrong beyond its own rounding: by that of its triangle's vertices, whose
+// coordinates are taken to be as large as the camera is far, 32 units in the last place; from depth, by one
+// of depth.
 float position_step(ivec2 pixel, ivec2 size, vec3 position) {
+    float rounding = 3.814697265625e-6 * camera_distance(position);
     if (POSITION_SOURCE != POSITION_FROM_DEPTH) {
-        return 0.0;
+        return rounding;
     }
     float depth = texelFetch(g_position, pixel, 0).x;
-    return distance(position_at_depth(pixel, size, depth * (1.0 - 1.1920929e-7)), position);
+    return max(rounding, distance(position_at_depth(pixel, size, depth * (1.0 - 1.1920929e-7)), position));
 }
 
 // How wide the penumbra of a blocker is, by the part of a ray that is before it. A lobe narrower than the

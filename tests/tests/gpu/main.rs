@@ -59,6 +59,7 @@ mod shadow_levels;
 mod shadow_mistakes;
 mod shadow_motion;
 mod shadow_rays;
+mod shadow_scales;
 mod shadowed_reference;
 mod shadows;
 mod shape_frames;

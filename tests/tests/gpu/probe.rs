@@ -335,8 +335,8 @@ fn arcs_are_what_they_say() {
     assert!(noticed > 10_000, "the twin: {noticed} noticed");
 }
 
-/// Rays that leave a floor of any tilt, out to 300 m, start above it; where positions are wrong by a step,
-/// too.
+/// Rays that leave a floor of any tilt and size, out to 200 times the viewer's height, start above it; where
+/// positions are wrong by a step, too.
 #[test]
 fn shadow_rays_start_above_the_surface_that_they_leave() {
     let Some(engine) = TestEngine::new() else { return };
@@ -346,9 +346,10 @@ fn shadow_rays_start_above_the_surface_that_they_leave() {
         // A point of the plane at a height of -1.5, rounded; moved by up to `step` away from it
         let normal = wide(narrow(random.direction(), 0.0));
         let tangent = normal.cross(random.direction()).normalize_or_zero();
-        let distance = 10.0_f64.powf(random.between(-3.0, 2.5));
+        let scale = [1.0, 1e-6, 1e4][index % 3];
+        let distance = scale * 10.0_f64.powf(random.between(-3.0, 2.5));
         let step = if index % 2 == 0 { 0.0 } else { 1e-4 * distance };
-        let point = tangent * distance - normal * 1.5;
+        let point = tangent * distance - normal * scale * 1.5;
         let moved = point + random.direction() * step * 0.99;
         given.push([narrow(moved, 0.0), narrow(normal, step), [0.0; 4]]);
         planes.push((normal.normalize_or_zero(), point, step));
@@ -359,9 +360,9 @@ fn shadow_rays_start_above_the_surface_that_they_leave() {
         let position = wide(arguments[0]);
         let height = normal.dot(wide(found[0]) - *point);
         assert!(height > 0.0, "{height:e} above the plane at {position}");
-        // 256 units in the last place of each coordinate, or the length; rounding of the sum is another one
+        // 2^-16 of the largest coordinate, two steps, and half a unit in each last place of the sum
         let largest = position.abs().max_element();
-        let bound = 3.0_f64.sqrt() * (largest * 3.2e-5).max(1.6e-5) + 3.01 * step;
+        let bound = (2.0_f64.powi(-16) + 2.0_f64.powi(-23)) * largest + 2.0 * step;
         let moved = wide(found[0]).distance(position);
         assert!(moved <= bound, "{moved:e} from {position}");
         below += usize::from(normal.dot(position - *point) < 0.0);

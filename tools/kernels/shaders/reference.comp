@@ -144,8 +144,11 @@ vec3[2] load_ray_origins(ArealightSurface surface, uint index) {
     vec3 face = cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0);
     vec3 normal = arealight_normalize_or(face, surface.normal);
     normal = dot(normal, surface.view) < 0.0 ? -normal : normal;
-    return vec3[2](arealight_ray_origin(surface.position, normal, 0.0),
-                   arealight_ray_origin(surface.position, -normal, 0.0));
+    // Rounding of the vertices, towards the normal: 8 units in the last place of each coordinate
+    vec3 largest = max(max(abs(triangle.p0), abs(triangle.p1)), abs(triangle.p2));
+    float step = 9.5367431640625e-7 * dot(abs(normal), largest);
+    return vec3[2](arealight_ray_origin(surface.position, normal, step),
+                   arealight_ray_origin(surface.position, -normal, step));
 }
 
 // Whether light arrives from a light's point, `offset` from the surface.

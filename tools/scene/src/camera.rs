@@ -72,7 +72,7 @@ impl Camera {
                 .max(corner.dot(camera.up).abs() / camera.half_height);
             distance = distance.max(across - corner.dot(forward));
         }
-        camera.position -= forward * (distance * FRAMING_MARGIN).max(1e-3);
+        camera.position -= forward * if distance > 0.0 { distance * FRAMING_MARGIN } else { 1e-3 };
         camera
     }
 
