@@ -165,7 +165,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if wanted("shapes") {
         println!("## A floor under disks and spheres, {} x {}\n", SIZE[0], SIZE[1]);
         println!("{}", markdown(&shape_frames(&engine, rounds)?));
-        pictures::load(&mut engine, &[Arc::new(Texture::noise(256, 256, 1))])?;
+        pictures::load(&mut engine, &[Arc::new(Texture::noise(256, 256, 1))], |_| 1.0)?;
         println!("{}", markdown(&image_frames(&engine, rounds)?));
     }
     Ok(())

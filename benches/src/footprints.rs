@@ -273,7 +273,7 @@ pub fn run(
 /// An engine that has the pictures for layers.
 fn engine(host: &Host, table: &LightTable, textures: &[Arc<Texture>]) -> Result<Engine, EngineError> {
     let mut engine = Engine::new(host.clone(), table, TableFormat::Rgba32Float)?;
-    crate::pictures::load(&mut engine, textures)?;
+    crate::pictures::load(&mut engine, textures, |_| 1.0)?;
     Ok(engine)
 }
 

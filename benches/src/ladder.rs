@@ -344,7 +344,7 @@ fn patches(engine: &Engine, workload: &Workload, seed: u64) -> Result<GBuffer, E
 /// An engine whose light textures are the pictures.
 fn engine(host: &Host, table: &LightTable, textures: &[Arc<Texture>]) -> Result<Engine, EngineError> {
     let mut engine = Engine::new(host.clone(), table, TableFormat::default())?;
-    crate::pictures::load(&mut engine, textures)?;
+    crate::pictures::load(&mut engine, textures, |_| 1.0)?;
     Ok(engine)
 }
 

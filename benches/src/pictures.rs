@@ -6,14 +6,17 @@ use arealight_oracle::texture::Texture;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Loads pictures, a layer each, in the size of the largest.
+/// Loads pictures, a layer each, in the size of the largest, with what the texels of each are divided by.
 ///
 /// # Errors
 /// [`EngineError`] where one cannot be loaded, or the device or its memory is too small.
-pub fn load(engine: &mut Engine, pictures: &[Arc<Texture>]) -> Result<(), EngineError> {
-    let largest =
-        |side: fn(&Texture) -> usize| pictures.iter().map(|picture| side(picture)).max().unwrap_or(1);
-    let size = PyramidSize::for_image(largest(Texture::width) as u32, largest(Texture::height) as u32);
+pub fn load(
+    engine: &mut Engine,
+    pictures: &[Arc<Texture>],
+    divisor: impl Fn(&Texture) -> f32,
+) -> Result<(), EngineError> {
+    let side = |picture: &Arc<Texture>| picture.width().max(picture.height()) as u32;
+    let size = PyramidSize::for_image(pictures.iter().map(side).max().unwrap_or(1), 1);
     let texel = |texel: &DVec3| texel.as_vec3().extend(1.0).to_array();
     let texels: Vec<Vec<[f32; 4]>> =
         pictures.iter().map(|picture| picture.texels().iter().map(texel).collect()).collect();
@@ -23,7 +26,7 @@ pub fn load(engine: &mut Engine, pictures: &[Arc<Texture>]) -> Result<(), Engine
         .map(|(picture, texels)| SourceImage {
             texels: SourceTexels::Linear(texels),
             size: [picture.width() as u32, picture.height() as u32],
-            part: TexturePart::default(),
+            part: TexturePart { divisor: divisor(picture), ..TexturePart::default() },
         })
         .collect();
     engine.load_textures(size, &sources)

@@ -104,7 +104,7 @@ pub fn measure(host: &Host, side: u32, rounds: usize) -> Result<TextureCost, Eng
     let texels: Vec<[f32; 4]> =
         (0..side * side).map(|i| [i % 7, i % 11, i % 13, 1].map(|value| value as f32)).collect();
     let mips = Mips::new(&passes, &texels, side)?;
-    let size = PyramidSize::new(side, side).expect("a size of light textures");
+    let size = PyramidSize::new(side).expect("a size of light textures");
     let array = TextureArray::new(&passes, size, 1)?;
     let image =
         SourceImage { texels: SourceTexels::Linear(&texels), size: [side; 2], part: TexturePart::default() };

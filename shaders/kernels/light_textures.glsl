@@ -12,8 +12,8 @@ vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level) {
     return textureLod(sampler2DArray(light_images, light_sampler), vec3(coordinate, float(layer)), level).rgb;
 }
 
-ivec2 arealight_bridge_light_texture_size() {
-    return textureSize(light_images, 0).xy;
+int arealight_bridge_light_texture_side() {
+    return textureSize(light_images, 0).x;
 }
 
 #else
@@ -23,8 +23,8 @@ vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level) {
     return textureLod(light_textures, vec3(coordinate, float(layer)), level).rgb;
 }
 
-ivec2 arealight_bridge_light_texture_size() {
-    return textureSize(light_textures, 0).xy;
+int arealight_bridge_light_texture_side() {
+    return textureSize(light_textures, 0).x;
 }
 #endif
 

@@ -19,6 +19,7 @@ layout(push_constant, std430) uniform TextureLoadConstants {
     vec2 stride;        // texels of the source from one texel of ours to the next
     uint flags;
     uint layer;
+    float factor;       // of every texel
 } constants;
 
 // What the pipeline can do besides copying texels one to one, by bits; unused steps cost nothing.
@@ -51,13 +52,14 @@ ivec2 wrap(ivec2 place) {
                    (constants.flags & LOAD_MIRROR_V) != 0u));
 }
 
-// A texel in linear light: NaN and negative numbers are zero, and what sixteen bits cannot hold is what they
-// can.
+// A texel in linear light times the factor: NaN and negative numbers are zero, and what sixteen bits cannot
+// hold is what they can.
 vec3 fetch_linear(ivec2 texel) {
     vec3 color = texelFetch(source, texel, 0).rgb;
     if ((LOAD_STEPS & STEP_DECODING) != 0u && (constants.flags & LOAD_SRGB) != 0u) {
         color = linear_from_srgb(color);
     }
+    color *= constants.factor;
     return mix(vec3(0.0), min(color, LARGEST_HALF), greaterThan(color, vec3(0.0)));
 }
 

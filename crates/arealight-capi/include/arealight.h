@@ -745,14 +745,10 @@ typedef struct ArealightShadowFrame {
 
 // The lights' images: a layer each, all of one size, with the levels that footprints are looked up in.
 typedef struct ArealightTextureOptions {
-    // In texels: a power of two from 64 to 4096. Images of other sizes are resampled.
-    uint32_t width;
-    // Likewise.
-    uint32_t height;
+    // Width and height in texels: a power of two from 64 to 4096. Images of other sizes are resampled.
+    uint32_t side;
     // How many images, from 1 on.
     uint32_t layers;
-    // 0
-    uint32_t reserved;
 } ArealightTextureOptions;
 
 // What light textures need of the host.
@@ -785,7 +781,7 @@ typedef struct ArealightTextureSetup {
     void *command_buffer;
 } ArealightTextureSetup;
 
-// An image that replaces a layer. Zero in `part_size` is the whole image.
+// An image that replaces a layer. Zero in `part_size` is the whole image, in `divisor` 1.
 typedef struct ArealightTextureUpdate {
     // VkDescriptorSet that arealight_textures_write_source_set pointed at the image.
     uint64_t source_set;
@@ -806,6 +802,11 @@ typedef struct ArealightTextureUpdate {
     uint32_t wrap_u;
     // Along v.
     uint32_t wrap_v;
+    // What texels are divided by, where they are brighter or dimmer than half floats hold well (6e-5 to
+    // 65,504); from 1e-30 to 1e30. The radiance of lights that show the layer is to be multiplied by it.
+    float divisor;
+    // 0
+    uint32_t reserved;
 } ArealightTextureUpdate;
 
 #ifdef __cplusplus
@@ -1341,11 +1342,9 @@ AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, nodes) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, triangles) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, nodes_size) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, triangles_size) == 24);
-AREALIGHT_ASSERT(sizeof(ArealightTextureOptions) == 16);
-AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, width) == 0);
-AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, height) == 4);
-AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, layers) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, reserved) == 12);
+AREALIGHT_ASSERT(sizeof(ArealightTextureOptions) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, side) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, layers) == 4);
 AREALIGHT_ASSERT(sizeof(ArealightTextureNeeds) == 104);
 AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, memory) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, level_set) == 32);
@@ -1359,7 +1358,7 @@ AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, level_sets) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, level_set_count) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, reserved) == 28);
 AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, command_buffer) == 32);
-AREALIGHT_ASSERT(sizeof(ArealightTextureUpdate) == 64);
+AREALIGHT_ASSERT(sizeof(ArealightTextureUpdate) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, source_set) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, part_low) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, part_size) == 24);
@@ -1369,6 +1368,8 @@ AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, source_height) == 48);
 AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, decode_srgb) == 52);
 AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, wrap_u) == 56);
 AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, wrap_v) == 60);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, divisor) == 64);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, reserved) == 68);
 #undef AREALIGHT_ASSERT
 #endif
 

@@ -66,9 +66,8 @@ pub unsafe extern "C" fn arealight_textures_create(
             arguments::write(out, std::ptr::null_mut(), "out")?;
             (handles::borrow(arealight, "arealight")?, arguments::read(options, "options")?)
         };
-        arguments::refuse_reserved(options.reserved, "options.reserved")?;
-        let size = PyramidSize::new(options.width, options.height)
-            .map_err(|error| Failure::argument(format!("options.width, options.height: {error}")))?;
+        let size = PyramidSize::new(options.side)
+            .map_err(|error| Failure::argument(format!("options.side: {error}")))?;
         // SAFETY: the textures are destroyed by the host, by the contract of arealight_textures_destroy.
         let textures = unsafe { LightTextures::new(arealight.context(), size, options.layers) }?;
         let made = ArealightTextures { inner: Mutex::new(Inner { textures, setup: None }) };
@@ -224,6 +223,7 @@ pub unsafe extern "C" fn arealight_textures_update(
 
 fn read_update(index: usize, update: &ArealightTextureUpdate) -> Result<TextureUpdate, Failure> {
     let field = |name| format!("updates[{index}].{name}");
+    arguments::refuse_reserved(update.reserved, &field("reserved"))?;
     arguments::refuse_null([(update.source_set == 0, &field("source_set"))])?;
     let wrap = |wrap, name| match wrap {
         AREALIGHT_WRAP_CLAMP => Ok(Wrap::Clamp),
@@ -243,6 +243,7 @@ fn read_update(index: usize, update: &ArealightTextureUpdate) -> Result<TextureU
             low: DVec2::from_array(update.part_low),
             size,
             wrap: [wrap(update.wrap_u, "wrap_u")?, wrap(update.wrap_v, "wrap_v")?],
+            divisor: if update.divisor == 0.0 { 1.0 } else { update.divisor },
         },
         decode_srgb: read_flag(update.decode_srgb, &field("decode_srgb"))?,
     })

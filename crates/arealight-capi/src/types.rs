@@ -460,14 +460,10 @@ pub struct ArealightBlockerArrays {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightTextureOptions {
-    /// In texels: a power of two from 64 to 4096. Images of other sizes are resampled.
-    pub width: u32,
-    /// Likewise.
-    pub height: u32,
+    /// Width and height in texels: a power of two from 64 to 4096. Images of other sizes are resampled.
+    pub side: u32,
     /// How many images, from 1 on.
     pub layers: u32,
-    /// 0
-    pub reserved: u32,
 }
 
 /// What light textures need of the host.
@@ -504,7 +500,7 @@ pub struct ArealightTextureSetup {
     pub command_buffer: *mut c_void,
 }
 
-/// An image that replaces a layer. Zero in `part_size` is the whole image.
+/// An image that replaces a layer. Zero in `part_size` is the whole image, in `divisor` 1.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightTextureUpdate {
@@ -527,4 +523,9 @@ pub struct ArealightTextureUpdate {
     pub wrap_u: u32,
     /// Along v.
     pub wrap_v: u32,
+    /// What texels are divided by, where they are brighter or dimmer than half floats hold well (6e-5 to
+    /// 65,504); from 1e-30 to 1e30. The radiance of lights that show the layer is to be multiplied by it.
+    pub divisor: f32,
+    /// 0
+    pub reserved: u32,
 }

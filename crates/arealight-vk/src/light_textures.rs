@@ -99,11 +99,11 @@ impl LightTextures {
         let load = [load(0)?, load(1)?, load(2)?, load(3)?];
         let blur = |variant: usize| pass(&TEXTURE_BLUR, (constant::RADIUS, plan::BLUR_RADII[variant]));
         let blur = [blur(0)?, blur(1)?, blur(2)?];
-        let [width, height] = size.extent(0);
+        let side = size.side(0);
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(FORMAT)
-            .extent(vk::Extent3D { width, height, depth: 1 })
+            .extent(vk::Extent3D { width: side, height: side, depth: 1 })
             .mip_levels(size.levels())
             .array_layers(layers)
             .samples(vk::SampleCountFlags::TYPE_1)
@@ -211,8 +211,9 @@ impl LightTextures {
         self.layers
     }
 
-    /// The image: [`PyramidSize::levels`] levels of [`PyramidSize::extent`] texels in `R16G16B16A16_SFLOAT`,
-    /// in layout `GENERAL` once it was cleared. It can be copied from, but not written to.
+    /// The image: [`PyramidSize::levels`] levels of [`PyramidSize::side`] texels a side in
+    /// `R16G16B16A16_SFLOAT`, in layout `GENERAL` once it was cleared. It can be copied from, but not written
+    /// to.
     pub fn image(&self) -> vk::Image {
         self.image
     }
@@ -368,8 +369,7 @@ impl LightTextures {
         // Load level 0, after whatever used the layers before
         barrier((everything, WRITE), (compute, READ | WRITE));
         for (update, constants) in updates.iter().zip(&constants) {
-            let [width, height] = self.size.extent(0);
-            let groups = TEXTURE_LOAD.groups_for([width, height, 1]);
+            let groups = TEXTURE_LOAD.groups_for([self.size.side(0), self.size.side(0), 1]);
             let pass = &self.load[constants.steps() as usize];
             let bytes = bytemuck::bytes_of(constants);
             // SAFETY: as above.
@@ -475,11 +475,11 @@ fn check_size(context: &Context, size: PyramidSize, layers: u32) -> Result<(), E
             needed_by: "light textures",
         });
     };
-    let ([width, height], [widest, highest]) = (size.extent(0), limits.extent);
-    if width > widest || height > highest {
+    let (side, [widest, highest]) = (size.side(0), limits.extent);
+    if side > widest.min(highest) {
         let message = format!(
-            "{width} x {height} texels, but the device's largest image has {widest} x {highest}; take a \
-            smaller size"
+            "{side} x {side} texels, but the device's largest image has {widest} x {highest}; take a smaller \
+            size"
         );
         return Err(Error::InvalidArgument { field: "size", message });
     }

@@ -188,6 +188,8 @@ pub struct TextureLoadConstants {
     pub flags: u32,
     /// The layer that is written.
     pub layer: u32,
+    /// What texels are multiplied by.
+    pub factor: f32,
 }
 
 impl TextureLoadConstants {

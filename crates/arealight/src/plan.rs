@@ -333,8 +333,7 @@ pub const BLUR_RADII: [u32; 3] = [3, 4, MOST_TAPS as u32];
 
 /// The groups that make `level` of so many layers.
 pub fn blur_groups(size: PyramidSize, level: u32, layers: u32) -> [u32; 3] {
-    let extent = size.extent(level);
-    let [columns, rows] = [0, 1].map(|axis| extent[axis].div_ceil(BLUR_BLOCK[axis]));
+    let [columns, rows] = BLUR_BLOCK.map(|texels| size.side(level).div_ceil(texels));
     kernels::TEXTURE_BLUR.groups_for([columns, rows, layers])
 }
 
@@ -389,7 +388,7 @@ mod tests {
     #[test]
     fn groups_cover_every_pixel() {
         assert_eq!(kernels::SHADE.groups_for([17, 8, 1]), [3, 1, 1]);
-        assert_eq!(blur_groups(PyramidSize::new(128, 64).unwrap(), 1, 3), [1, 4, 3]);
+        assert_eq!(blur_groups(PyramidSize::new(128).unwrap(), 1, 3), [1, 8, 3]);
     }
 
     #[test]

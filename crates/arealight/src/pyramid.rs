@@ -45,22 +45,22 @@ const WIDENED: u32 = 3;
 /// How much the level's fraction is lowered in its middle, times four.
 const EASE: f64 = 0.2;
 
-/// The size of a light texture: `width` × `height` texels, each a power of two from [`PyramidSize::SMALLEST`]
+/// The size of a light texture: as many texels wide as high, a power of two from [`PyramidSize::SMALLEST`]
 /// to [`PyramidSize::LARGEST`].
 ///
-/// Images of any other size are resampled when they are loaded. The blur is equally wide in both directions
-/// *in texels*, so a size whose aspect is near that of the lights is best.
+/// Images of any other size and aspect are resampled when they are loaded, so that each is blurred down to
+/// its mean along both sides, whatever the other layers show: a layer that is longer than wide in texels
+/// would stop at the blur of its short side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct PyramidSize {
-    width: u32,
-    height: u32,
+    side: u32,
 }
 
 /// The most taps to a side that make a level from the one before it: [`PyramidSize::weights`].
 pub const MOST_TAPS: usize = 6;
 
 impl PyramidSize {
-    /// The smallest width and height.
+    /// The smallest side.
     pub const SMALLEST: u32 = texture_error::SMALLEST;
     /// The largest.
     pub const LARGEST: u32 = texture_error::LARGEST;
@@ -68,35 +68,33 @@ impl PyramidSize {
     /// A size, checked.
     ///
     /// # Errors
-    /// [`TextureError::LayerSize`] where a side is not a power of two within the limits.
-    pub fn new(width: u32, height: u32) -> Result<Self, TextureError> {
-        let fits = |side: u32| side.is_power_of_two() && (Self::SMALLEST..=Self::LARGEST).contains(&side);
-        if fits(width) && fits(height) {
-            Ok(Self { width, height })
+    /// [`TextureError::LayerSize`] where the side is not a power of two within the limits.
+    pub fn new(side: u32) -> Result<Self, TextureError> {
+        if side.is_power_of_two() && (Self::SMALLEST..=Self::LARGEST).contains(&side) {
+            Ok(Self { side })
         } else {
-            Err(TextureError::LayerSize { width, height })
+            Err(TextureError::LayerSize { side })
         }
     }
 
-    /// The size for an image: each side rounded up to what is allowed.
+    /// The size for an image: its longer side rounded up to what is allowed.
     pub fn for_image(width: u32, height: u32) -> Self {
-        let side = |texels: u32| texels.clamp(Self::SMALLEST, Self::LARGEST).next_power_of_two();
-        Self { width: side(width), height: side(height) }
+        Self { side: width.max(height).clamp(Self::SMALLEST, Self::LARGEST).next_power_of_two() }
     }
 
     /// How many levels there are, level 0 included.
     pub fn levels(self) -> u32 {
-        self.width.min(self.height).ilog2() - 1
+        self.side.ilog2() - 1
     }
 
     /// Width and height of a level, in texels.
-    pub fn extent(self, level: u32) -> [u32; 2] {
-        [self.width, self.height].map(|side| (side.checked_shr(level).unwrap_or(0)).max(1))
+    pub fn side(self, level: u32) -> u32 {
+        self.side.checked_shr(level).unwrap_or(0).max(1)
     }
 
     /// Texels of all levels of a layer: 1.34 times the image's.
     pub fn texels(self) -> u64 {
-        (0..self.levels()).map(|level| self.extent(level).map(u64::from).iter().product::<u64>()).sum()
+        (0..self.levels()).map(|level| u64::from(self.side(level)).pow(2)).sum()
     }
 
     /// The variance of a level's blur, in squares of its own texels; zero for level 0.
@@ -154,7 +152,7 @@ impl PyramidSize {
     }
 
     /// The level, between two, at which a trilinear lookup is blurred with a standard deviation of `blur`
-    /// texels of level 0 (of the geometric mean of both axes); from 0 to the last.
+    /// texels of level 0; from 0 to the last.
     pub fn level_of(self, blur: f64) -> f64 {
         let square = blur.max(0.0).powi(2);
         let last = f64::from(self.levels() - 1);
@@ -195,24 +193,20 @@ mod tests {
 
     #[test]
     fn a_size_is_a_power_of_two_within_limits() {
-        assert!(PyramidSize::new(256, 128).is_ok());
-        for (width, height) in [(0, 64), (32, 64), (64, 96), (8192, 64)] {
-            let error = PyramidSize::new(width, height).unwrap_err();
-            assert!(error.to_string().contains(&format!("{width} x {height}")), "{error}");
+        assert!(PyramidSize::new(256).is_ok());
+        for side in [0, 32, 96, 8192] {
+            let error = PyramidSize::new(side).unwrap_err();
+            assert!(error.to_string().contains(&format!("{side} x {side}")), "{error}");
         }
-        assert_eq!(PyramidSize::for_image(1920, 1080).extent(0), [2048, 2048]);
-        assert_eq!(PyramidSize::for_image(1, 100_000).extent(0), [64, 4096]);
+        assert_eq!(PyramidSize::for_image(1920, 1080).side(0), 2048);
+        assert_eq!(PyramidSize::for_image(1, 100_000).side(0), 4096);
     }
 
     #[test]
     fn levels_halve_down_to_four_texels() {
-        let size = PyramidSize::new(256, 256).unwrap();
+        let size = PyramidSize::new(256).unwrap();
         assert_eq!(size.levels(), 7);
-        assert_eq!(size.extent(0), [256, 256]);
-        assert_eq!(size.extent(6), [4, 4]);
-        // A wide one stops where its height does
-        let wide = PyramidSize::new(512, 64).unwrap();
-        assert_eq!(wide.extent(wide.levels() - 1), [32, 4]);
+        assert_eq!([0, 6, 40].map(|level| size.side(level)), [256, 4, 1]);
         // A geometric series
         let ratio = size.texels() as f64 / (256.0 * 256.0);
         assert!(ratio < 1.334, "{ratio}");
@@ -221,7 +215,7 @@ mod tests {
     #[test]
     fn the_last_level_has_the_widest_blur() {
         for side in [64, 256, 4096] {
-            let size = PyramidSize::new(side, side).unwrap();
+            let size = PyramidSize::new(side).unwrap();
             let blur = size.blur(size.levels() - 1) / f64::from(side);
             assert!((blur - WIDEST_BLUR).abs() < 2e-4, "{side}: {blur}");
         }
@@ -229,7 +223,7 @@ mod tests {
 
     #[test]
     fn kernels_add_up_to_the_blur_of_their_level() {
-        let size = PyramidSize::new(256, 256).unwrap();
+        let size = PyramidSize::new(256).unwrap();
         let mut variance = 0.0;
         for level in 1..size.levels() {
             let half = size.weights(level).map(f64::from);
@@ -243,7 +237,7 @@ mod tests {
 
     #[test]
     fn a_levels_own_blur_is_found_at_it() {
-        let size = PyramidSize::new(512, 256).unwrap();
+        let size = PyramidSize::new(512).unwrap();
         for level in 0..size.levels() {
             let found = size.level_of(size.blur(level));
             assert!((found - f64::from(level)).abs() < 1e-4, "level {level}: {found}");

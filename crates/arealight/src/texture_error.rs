@@ -2,13 +2,15 @@
 
 use glam::DVec2;
 
-/// Width and height of a light texture: the least and the most.
+/// The side of a light texture: the least and the most.
 pub(crate) const SMALLEST: u32 = 64;
 pub(crate) const LARGEST: u32 = 4096;
 /// Of an image that is loaded, and of the part of it that is read.
 pub(crate) const LARGEST_SOURCE: u32 = 4096;
 pub(crate) const FARTHEST: f64 = 4096.0;
 pub(crate) const MOST_TEXELS: f64 = 16384.0;
+/// What texels are divided by: its reciprocal is a number, too.
+pub(crate) const DIVISORS: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
 
 /// Why light textures cannot be made, or a part of an image not be loaded into one.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -16,15 +18,19 @@ pub(crate) const MOST_TEXELS: f64 = 16384.0;
 pub enum TextureError {
     /// A size that no light texture has.
     #[error(
-        "light texture size {width} x {height}: each must be a power of two from {} to {}",
+        "light texture size {side} x {side}: a side must be a power of two from {} to {}",
         SMALLEST,
         LARGEST
     )]
     LayerSize {
-        /// The width given.
-        width: u32,
-        /// The height given.
-        height: u32,
+        /// The side given.
+        side: u32,
+    },
+    /// Texels cannot be divided by it.
+    #[error("divisor: {divisor} must be from {} to {}", DIVISORS.start(), DIVISORS.end())]
+    Divisor {
+        /// The divisor given.
+        divisor: f32,
     },
     /// The image has no texels, or too many.
     #[error("source of {width} x {height} texels: each must be from 1 to {}; scale it down", LARGEST_SOURCE)]

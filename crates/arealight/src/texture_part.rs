@@ -30,12 +30,16 @@ pub struct TexturePart {
     pub size: DVec2,
     /// What the image is beyond 0 to 1, along u and v.
     pub wrap: [Wrap; 2],
+    /// What texels are divided by, where they are brighter or dimmer than half floats hold well (6e-5 to
+    /// 65,504): [`TexturePart::divisor_of`]. The radiance of the lights that show the layer is to be
+    /// multiplied by it. From 1e-30 to 1e30.
+    pub divisor: f32,
 }
 
 impl Default for TexturePart {
     /// The whole image.
     fn default() -> Self {
-        Self { low: DVec2::ZERO, size: DVec2::ONE, wrap: [Wrap::Clamp; 2] }
+        Self { low: DVec2::ZERO, size: DVec2::ONE, wrap: [Wrap::Clamp; 2], divisor: 1.0 }
     }
 }
 
@@ -49,6 +53,13 @@ impl TexturePart {
     pub const FARTHEST: f64 = texture_error::FARTHEST;
     /// The most texels of the image, repeats included, that a part may cover along an axis.
     pub const MOST_TEXELS: f64 = texture_error::MOST_TEXELS;
+
+    /// A divisor for an image whose brightest channel is this: it makes the most of half floats, which then
+    /// hold texels of a billionth of the brightest to a thousandth. 1 for what is no brightness.
+    pub fn divisor_of(brightest: f32) -> f32 {
+        let divisor = brightest / 32768.0;
+        if texture_error::DIVISORS.contains(&divisor) { divisor } else { 1.0 }
+    }
 
     /// The push constants that load the part of an image of `source` texels into `layer` of textures of
     /// `size`. `decode` tells that the image holds sRGB in a format that does not decode by itself.
@@ -75,9 +86,12 @@ impl TexturePart {
         {
             return Err(TextureError::Size { size: self.size, width, height });
         }
+        if !texture_error::DIVISORS.contains(&self.divisor) {
+            return Err(TextureError::Divisor { divisor: self.divisor });
+        }
 
         // From one texel of the layer to the next, and the first, from the middle of texel 0
-        let stride = covered / DVec2::from_array(size.extent(0).map(f64::from));
+        let stride = covered / f64::from(size.side(0));
         let mut first = self.low * texels + 0.5 * stride - 0.5;
         // A repeated image begins within its first repeat, so that the kernel's numbers are small
         for axis in 0..2 {
@@ -106,6 +120,7 @@ impl TexturePart {
             stride: stride.as_vec2().to_array(),
             flags: srgb | wrap[0] | wrap[1],
             layer,
+            factor: self.divisor.recip(),
         })
     }
 }
@@ -115,23 +130,23 @@ mod tests {
     use super::*;
 
     fn constants(part: TexturePart, source: [u32; 2]) -> Result<TextureLoadConstants, TextureError> {
-        part.load_constants(source, PyramidSize::new(128, 64).unwrap(), 3, false)
+        part.load_constants(source, PyramidSize::new(128).unwrap(), 3, false)
     }
 
     #[test]
     fn an_image_of_the_layers_size_is_copied() {
-        let whole = constants(TexturePart::default(), [128, 64]).unwrap();
+        let whole = constants(TexturePart::default(), [128, 128]).unwrap();
         assert_eq!((whole.first_texel, whole.first_offset, whole.stride), ([0, 0], [0.0, 0.0], [1.0, 1.0]));
         assert_eq!(
             (whole.layer, whole.flags),
             (3, TextureLoadConstants::CLAMP_U | TextureLoadConstants::CLAMP_V)
         );
         // So is a piece of that size, whatever the whole
-        let low = DVec2::new(22.0 / 300.0, 5.0 / 77.0);
-        let size = DVec2::new(128.0 / 300.0, 64.0 / 77.0);
-        let piece = constants(TexturePart { low, size, ..TexturePart::default() }, [300, 77]).unwrap();
+        let low = DVec2::new(22.0 / 300.0, 5.0 / 177.0);
+        let size = DVec2::new(128.0 / 300.0, 128.0 / 177.0);
+        let piece = constants(TexturePart { low, size, ..TexturePart::default() }, [300, 177]).unwrap();
         assert_eq!((piece.first_texel, piece.first_offset, piece.stride), ([22, 5], [0.0, 0.0], [1.0, 1.0]));
-        let larger = constants(TexturePart::default(), [100, 64]).unwrap();
+        let larger = constants(TexturePart::default(), [100, 128]).unwrap();
         assert_eq!(larger.steps(), TextureLoadConstants::RESAMPLE);
     }
 
@@ -141,12 +156,23 @@ mod tests {
             for (low, size, source) in
                 [(-0.5, 1.0, 7), (-4096.0, 3.0, 100), (17.3, 16384.0, 1), (0.0, 0.01, 4096)]
             {
-                let part = TexturePart { low: DVec2::splat(low), size: DVec2::splat(size), wrap: [wrap; 2] };
+                let (low, size) = (DVec2::splat(low), DVec2::splat(size));
+                let part = TexturePart { low, size, wrap: [wrap; 2], ..TexturePart::default() };
                 let found = constants(part, [source; 2]).unwrap();
                 // A whole period where the first texel is rounded to it
                 let within = 0..=source.cast_signed() * repeats;
                 assert!(found.first_texel.iter().all(|texel| within.contains(texel)), "{found:?}");
             }
+        }
+    }
+
+    #[test]
+    fn every_brightness_has_a_divisor() {
+        for brightest in [1e-20, 1e-6, 1.0, 65504.0, 1e6, 1e30, f32::MAX, 0.0, -1.0, f32::NAN, f32::INFINITY]
+        {
+            let divisor = TexturePart::divisor_of(brightest);
+            assert!(divisor == 1.0 || (brightest / divisor - 32768.0).abs() < 1.0, "{brightest}: {divisor}");
+            assert!(constants(TexturePart { divisor, ..TexturePart::default() }, [4, 4]).is_ok());
         }
     }
 
@@ -162,6 +188,10 @@ mod tests {
         for size in [DVec2::ZERO, DVec2::new(1.0, -1.0), DVec2::new(f64::NAN, 1.0), DVec2::splat(5000.0)] {
             let error = constants(TexturePart { size, ..part }, [4, 4]).unwrap_err();
             assert!(error.to_string().contains("of 4 x 4 texels"), "{error}");
+        }
+        for divisor in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e31] {
+            let error = constants(TexturePart { divisor, ..part }, [4, 4]).unwrap_err();
+            assert!(error.to_string().starts_with("divisor: "), "{error}");
         }
     }
 }

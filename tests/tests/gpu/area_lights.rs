@@ -138,10 +138,8 @@ fn images_on_lights_are_loaded_before_a_frame() {
     let light = Light { texture: Some(LightTexture { layer: 1, uvs }), ..lamp() };
     let lights = [light];
     let floor = Floor::new(&engine, &lights);
-    let info = AreaLightsInfo {
-        textures: Some((PyramidSize::new(64, 64).unwrap(), 2)),
-        ..AreaLightsInfo::default()
-    };
+    let info =
+        AreaLightsInfo { textures: Some((PyramidSize::new(64).unwrap(), 2)), ..AreaLightsInfo::default() };
     with_area_lights(&engine, &info, |area_lights| {
         let update = TextureUpdate {
             layer: 1,

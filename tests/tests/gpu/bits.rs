@@ -271,7 +271,7 @@ fn every_bit_pattern_of_an_image_gives_a_form_factor() {
         size: [1, 1],
         part: arealight::TexturePart::default(),
     };
-    engine.load_textures(PyramidSize::new(64, 64).unwrap(), &[image]).unwrap();
+    engine.load_textures(PyramidSize::new(64).unwrap(), &[image]).unwrap();
     let mut given = buffers();
     show_images(&mut given);
     for effects in [Effects::all(), Effects::all() - Effects::POLYGON] {

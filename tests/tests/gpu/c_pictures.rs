@@ -33,7 +33,12 @@ fn texels() -> Vec<[u8; 4]> {
 }
 
 fn part() -> TexturePart {
-    TexturePart { low: DVec2::new(0.25, 0.0), size: DVec2::new(1.5, 0.5), wrap: [Wrap::Mirror, Wrap::Clamp] }
+    TexturePart {
+        low: DVec2::new(0.25, 0.0),
+        size: DVec2::new(1.5, 0.5),
+        wrap: [Wrap::Mirror, Wrap::Clamp],
+        divisor: 2.5,
+    }
 }
 
 /// Corners of a rectangle over the pixel, from where it shines.
@@ -135,7 +140,7 @@ const NO_SET: ArealightSetLayout = ArealightSetLayout {
 
 impl<'a> CTextures<'a> {
     fn new(engine: &'a TestEngine, library: &'a CLibrary<'a>) -> Self {
-        let options = ArealightTextureOptions { width: 64, height: 128, layers: 2, reserved: 0 };
+        let options = ArealightTextureOptions { side: 128, layers: 2 };
         let mut raw = null_mut();
         let memory =
             ArealightMemory { size: 0, alignment: 0, staging_size: 0, memory_type_bits: 0, reserved: 0 };
@@ -223,6 +228,8 @@ impl<'a> CTextures<'a> {
             decode_srgb: 1,
             wrap_u: AREALIGHT_WRAP_MIRROR,
             wrap_v: 0,
+            divisor: 2.5,
+            reserved: 0,
         };
         let recorded = self.engine.host().submit(|commands| {
             let commands = commands.as_raw() as *mut c_void;
@@ -235,6 +242,8 @@ impl<'a> CTextures<'a> {
                 (ArealightTextureUpdate { layer: 2, ..update }, "layer: 2 is not there"),
                 (ArealightTextureUpdate { source_width: 0, ..update }, "source of 0 x 3 texels"),
                 (ArealightTextureUpdate { wrap_v: 3, ..update }, "updates[0].wrap_v: 3"),
+                (ArealightTextureUpdate { divisor: -1.0, ..update }, "divisor: -1"),
+                (ArealightTextureUpdate { reserved: 1, ..update }, "updates[0].reserved"),
                 (ArealightTextureUpdate { decode_srgb: 2, ..update }, "updates[0].decode_srgb: 2"),
                 (ArealightTextureUpdate { part_size: [f64::NAN, 1.0], ..update }, "size"),
             ] {
@@ -272,7 +281,7 @@ fn source(engine: &TestEngine, texels: &[[u8; 4]]) -> Image {
 fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     let Some(mut engine) = TestEngine::new() else { return };
     let shown = SourceImage { size: SIZE, texels: SourceTexels::Srgb(&texels()), part: part() };
-    let size = arealight::PyramidSize::new(64, 128).unwrap();
+    let size = arealight::PyramidSize::new(128).unwrap();
     let black = SourceImage {
         size: [1, 1],
         texels: SourceTexels::Srgb(&[[0, 0, 0, 255]]),

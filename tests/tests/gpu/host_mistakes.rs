@@ -98,7 +98,7 @@ fn what_a_device_lacks_is_named() {
 
     let formats = (c"vkGetPhysicalDeviceFormatProperties", no_format as *const c_void);
     let without = context(&engine, &lying_instance(&engine, &[limits, formats])).unwrap();
-    let size = arealight::PyramidSize::new(64, 64).unwrap();
+    let size = arealight::PyramidSize::new(64).unwrap();
     // SAFETY: nothing is made.
     let error = unsafe { LightTextures::new(&without, size, 1) }.unwrap_err();
     assert!(matches!(error, Error::MissingFeature { needed_by: "light textures", .. }), "{error}");

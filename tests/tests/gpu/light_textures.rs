@@ -9,7 +9,7 @@ use arealight_vk::{Error, LightTextures, Resource, TextureUpdate};
 use ash::vk;
 
 fn small() -> PyramidSize {
-    PyramidSize::new(64, 64).unwrap()
+    PyramidSize::new(64).unwrap()
 }
 
 #[test]

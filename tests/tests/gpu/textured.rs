@@ -1,12 +1,14 @@
 //! Textured lights: energy, orientation, and the cases that have no easy answer.
 
 use arealight::{Footprint, FormFactor, Horizon, Light, LightTexture, PyramidSize, Quality, SpecularLobes};
+use arealight_benches::pictures;
 use arealight_engine::{EvalPoint, SourceImage, SourceTexels};
 use arealight_oracle::material::Surface;
 use arealight_oracle::shading::footprint::{Filter, LobeSpaceLight, filtered};
 use arealight_oracle::texture::{Pyramid, Texture};
 use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface, point};
 use glam::{DVec2, DVec3, Vec3};
+use std::sync::Arc;
 
 const FOOTPRINTS: [Footprint; 3] = [Footprint::Round, Footprint::Ellipse, Footprint::Split];
 
@@ -38,7 +40,7 @@ fn engine() -> Option<TestEngine> {
         size: [SIZE, SIZE],
         part: arealight::TexturePart::default(),
     };
-    let size = PyramidSize::new(SIZE, SIZE).unwrap();
+    let size = PyramidSize::new(SIZE).unwrap();
     engine.load_textures(size, &[image(&white), image(&split), image(&huge)]).unwrap();
     Some(engine)
 }
@@ -158,7 +160,7 @@ fn lookups_are_those_of_their_float64_twins() {
         let [r, g, b, _] = split(column as u32, row as u32);
         DVec3::new(r.into(), g.into(), b.into())
     };
-    let size = PyramidSize::new(SIZE, SIZE).unwrap();
+    let size = PyramidSize::new(SIZE).unwrap();
     let pyramid = Pyramid::new(&Texture::from_fn(SIZE as usize, SIZE as usize, texel), size);
     // Under Lambert's lobe cosine space is the surface's: nothing else differs
     let mut given = points(4, SPLIT, 900);
@@ -387,6 +389,60 @@ fn a_far_light_shows_its_mean() {
             // Of an image whose halves are the same about its middle, the mean is seen exactly but for
             // binary16's and the sampler's rounding
             assert!((ratio - Vec3::ONE).abs().max_element() < 4e-3, "{footprint:?}: {ratio}");
+        }
+    }
+}
+
+/// Coloured bars side by side, in an image of so many texels.
+fn bars([width, height]: [usize; 2]) -> Arc<Texture> {
+    Arc::new(Texture::from_fn(width, height, |column, _| {
+        DVec3::from_array([4, 2, 1].map(|bit| if (column * 8 / width) & bit == 0 { 1.0 } else { 0.05 }))
+    }))
+}
+
+/// What a wall sees, over what it should, of a picture that is one unit high and so far before it, as a sum
+/// over fifteen places; it should see that share of the width from the left.
+fn wall(engine: &TestEngine, layer: u32, picture: &Texture, distance: f64, shown: f64) -> DVec3 {
+    let wide = picture.width() as f64 / picture.height() as f64;
+    let places = [-0.8, -0.3, 0.1, 0.5, 0.9].map(|x| [-0.7, 0.1, 0.6].map(|y| DVec2::new(x, y)));
+    let extent = 0.5 * (wide.max(1.0) + distance);
+    let (mut points, mut expected) = (vec![], DVec3::ZERO);
+    for place in places.as_flattened() {
+        let corner =
+            |u: f64, v: f64| DVec3::new((u - 0.5) * wide, v - 0.5, distance) - place.extend(0.0) * extent;
+        let uvs = vec![DVec2::ZERO, DVec2::Y, DVec2::ONE, DVec2::X];
+        let vertices = uvs.iter().map(|uv| corner(uv.x, uv.y)).collect();
+        let mut point = point(lambert_surface(), DVec3::Z, vertices, false);
+        for (x, y) in (0..64).flat_map(|y| (0..256).map(move |x| (x, y))) {
+            let (u, v) = (shown * (f64::from(x) + 0.5) / 256.0, (f64::from(y) + 0.5) / 64.0);
+            let kernel = (distance / corner(u, v).length_squared()).powi(2) / std::f64::consts::PI;
+            expected += picture.sample(DVec2::new(u, v)) * kernel * wide / (256.0 * 64.0);
+        }
+        point.light.texture = Some(LightTexture { layer, uvs });
+        points.push(point);
+    }
+    let found: Vec3 = engine.eval(&points, Quality::default()).unwrap().iter().sum();
+    let unit = points[0].surface.diffuse_albedo * points[0].light.radiance.as_dvec3();
+    found.as_dvec3() / (expected * unit)
+}
+
+#[test]
+fn screens_of_any_aspect_show_their_colours_beside_others() {
+    let Some(mut engine) = TestEngine::new() else { return };
+    let sizes = [[256, 144], [256, 128], [64, 192], [512, 32], [256, 256]];
+    let pictures = sizes.map(bars);
+    pictures::load(&mut engine, &pictures, |_| 1.0).unwrap();
+    for (layer, picture) in (0..).zip(&pictures) {
+        for distance in [0.5, 2.0, 8.0, 16.0, 32.0] {
+            // Nearer to the longest, one blur for both directions sees too much of its length
+            if distance < 16.0 && picture.width() > 4 * picture.height() {
+                continue;
+            }
+            let off = |shown| (wall(&engine, layer, picture, distance, shown) - 1.0).abs().max_element();
+            println!("{:?} at {distance}: {:.4}", sizes[layer as usize], off(1.0));
+            assert!(off(1.0) < 0.02, "{:?} at {distance}: {}", sizes[layer as usize], off(1.0));
+            // The twin is a blur that does not reach the other end
+            assert!(off(0.5) > 0.1, "{:?} at {distance}: {}", sizes[layer as usize], off(0.5));
         }
     }
 }

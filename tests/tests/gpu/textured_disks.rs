@@ -37,7 +37,7 @@ fn textures() -> Vec<Arc<Texture>> {
 
 fn engine() -> Option<TestEngine> {
     let mut engine = TestEngine::new()?;
-    pictures::load(&mut engine, &textures()).unwrap();
+    pictures::load(&mut engine, &textures(), |_| 1.0).unwrap();
     Some(engine)
 }
 

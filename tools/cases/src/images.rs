@@ -99,13 +99,20 @@ mod tests {
     #[test]
     fn an_image_is_read_once_and_what_is_none_has_a_reason() {
         let folder = tempfile::tempdir().unwrap();
-        let pixel = |x: usize, y: usize| (x as f32, y as f32, -0.5);
+        let pixel = |x: usize, y: usize| (x as f32, y as f32, 0.5);
         exr::prelude::write_rgb_file(folder.path().join("a.exr"), 3, 2, pixel).unwrap();
         std::fs::write(folder.path().join("b.exr"), "no image").unwrap();
         let mut images = Images::beside(&folder.path().join("cases.json"), |_| 300);
+        for texel in [-0.5, f32::NAN, f32::INFINITY] {
+            exr::prelude::write_rgb_file(folder.path().join("f.exr"), 1, 1, |_, _| (1.0, texel, 1.0))
+                .unwrap();
+            let mut images = Images::beside(&folder.path().join("cases.json"), |_| 300);
+            let error = images.load("f.exr").unwrap_err();
+            assert!(error.contains("must be finite and not negative"), "{error}");
+        }
         let image = images.load("a.exr").unwrap();
         assert_eq!((image.width(), image.height()), (3, 2));
-        assert_eq!(image.texel(2, 1), DVec3::new(2.0, 1.0, -0.5));
+        assert_eq!(image.texel(2, 1), DVec3::new(2.0, 1.0, 0.5));
         assert!(Arc::ptr_eq(&image, &images.load("a.exr").unwrap()));
         assert!(images.load("b.exr").is_err() && images.load("c.exr").is_err());
         assert_eq!(images.load(".").unwrap_err(), "not a plain file");

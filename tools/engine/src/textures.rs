@@ -105,13 +105,13 @@ impl Engine {
         Ok(Light::check_texture_layers(lights, self.texture_layers())?)
     }
 
-    /// A level of a layer: [`PyramidSize::extent`] texels, row after row.
+    /// A level of a layer: [`PyramidSize::side`] texels a side, row after row.
     ///
     /// # Errors
     /// [`EngineError::NoTextureLevel`] where it is not there; else memory is out.
     pub fn download_level(&self, layer: u32, level: u32) -> Result<Vec<[f32; 4]>, EngineError> {
-        let (textures, [width, height]) = self.texture_level(layer, level)?;
-        let texels = (width * height) as usize;
+        let (textures, side) = self.texture_level(layer, level)?;
+        let texels = (side * side) as usize;
         let bytes = (texels * size_of::<[half::f16; 4]>()) as u64;
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let staging = self.host().buffer("light texture, read back", bytes, usage, Location::Readback)?;
@@ -123,7 +123,7 @@ impl Engine {
         };
         let region = vk::BufferImageCopy::default()
             .image_subresource(subresource)
-            .image_extent(vk::Extent3D { width, height, depth: 1 });
+            .image_extent(vk::Extent3D { width: side, height: side, depth: 1 });
         let (image, layout) = (textures.image().image(), vk::ImageLayout::GENERAL);
         self.host().submit(|commands| {
             let device = self.host().device();
@@ -136,12 +136,12 @@ impl Engine {
         Ok(halves.into_iter().map(single).collect())
     }
 
-    /// The textures, and the extent of a level of them.
-    fn texture_level(&self, layer: u32, level: u32) -> Result<(&TextureArray, [u32; 2]), EngineError> {
+    /// The textures, and the side of a level of them.
+    fn texture_level(&self, layer: u32, level: u32) -> Result<(&TextureArray, u32), EngineError> {
         let levels = self.texture_size().map_or(0, PyramidSize::levels);
         match &self.textures {
             Some(textures) if layer < textures.image().layers() && level < levels => {
-                Ok((textures, textures.image().size().extent(level)))
+                Ok((textures, textures.image().size().side(level)))
             }
             _ => Err(EngineError::NoTextureLevel { layer, level, layers: self.texture_layers(), levels }),
         }

@@ -55,34 +55,33 @@ impl Scene {
             height: image.height,
             texels: &image.texels,
             srgb: texture.srgb,
-            part: TexturePart { low: shown.low, size: shown.size, wrap: [texture.wrap_u, texture.wrap_v] },
+            part: TexturePart {
+                low: shown.low,
+                size: shown.size,
+                wrap: [texture.wrap_u, texture.wrap_v],
+                ..TexturePart::default()
+            },
         })
     }
 
-    /// A size for all layers of the light textures: as many texels as the most detailed one has, but at most
-    /// `largest` a side (1024 is enough for most scenes) and [`MAX_LIGHT_TEXELS`] in all. None if there are
-    /// no light textures.
+    /// A size for all layers of the light textures: as many texels a side as the longest one has, but at most
+    /// `largest` (1024 is enough for most scenes) and [`MAX_LIGHT_TEXELS`] in all. None if there are no light
+    /// textures.
     pub fn light_texture_size(&self, largest: u32) -> Option<PyramidSize> {
         let largest = largest.clamp(PyramidSize::SMALLEST, PyramidSize::LARGEST);
         let sources = (0..self.light_textures.len()).filter_map(|layer| self.light_texture_source(layer));
-        let sizes = sources.map(|source| {
+        let sides = sources.map(|source| {
             let texels = source.part.size * DVec2::new(f64::from(source.width), f64::from(source.height));
-            let [width, height] = texels.to_array().map(|side| side.ceil() as u32);
-            PyramidSize::for_image(width.min(largest), height.min(largest)).extent(0)
+            texels.max_element().ceil() as u32
         });
-        let [width, height] = sizes.reduce(|[a, b], [c, d]| [a.max(c), b.max(d)])?;
+        let wanted = PyramidSize::for_image(sides.max()?.min(largest), 1).side(0);
         // A limit between two powers of two is kept, too
-        let limit = if largest.is_power_of_two() { largest } else { largest.next_power_of_two() / 2 };
-        let mut size = [width.min(limit), height.min(limit)];
+        let first = if wanted > largest { wanted / 2 } else { wanted };
         let layers = self.light_textures.len() as u64;
-        loop {
-            let fits = PyramidSize::new(size[0], size[1]).ok()?;
-            if fits.texels() * layers <= MAX_LIGHT_TEXELS || size == [PyramidSize::SMALLEST; 2] {
-                return Some(fits);
-            }
-            let longest = usize::from(size[1] > size[0]);
-            size[longest] /= 2;
-        }
+        let sides = std::iter::successors(Some(first), |side| Some(side / 2));
+        let mut sizes = sides.map_while(|side| PyramidSize::new(side).ok());
+        let smallest = PyramidSize::new(PyramidSize::SMALLEST).ok();
+        sizes.find(|size| size.texels() * layers <= MAX_LIGHT_TEXELS).or(smallest)
     }
 }
 

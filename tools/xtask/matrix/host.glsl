@@ -86,9 +86,9 @@ vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level) {
 }
 #endif
 
-#ifndef WITHOUT_arealight_bridge_light_texture_size
-ivec2 arealight_bridge_light_texture_size() {
-    return textureSize(LIGHT_TEXTURES, 0).xy;
+#ifndef WITHOUT_arealight_bridge_light_texture_side
+int arealight_bridge_light_texture_side() {
+    return textureSize(LIGHT_TEXTURES, 0).x;
 }
 #endif
 

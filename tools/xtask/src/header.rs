@@ -121,11 +121,12 @@ fn layouts() -> [Layout; 23] {
         ArealightShadowResources { shadow, radiance, history, blocker_nodes, blocker_triangles }
         ArealightShadowFrame { frame, host_set, origin_shift, reserved }
         ArealightBlockerArrays { nodes, triangles, nodes_size, triangles_size }
-        ArealightTextureOptions { width, height, layers, reserved }
+        ArealightTextureOptions { side, layers }
         ArealightTextureNeeds { memory, level_set, source_set, level_set_count, reserved }
         ArealightTextureSetup { memory, memory_offset, level_sets, level_set_count, reserved, command_buffer }
         ArealightTextureUpdate {
             source_set, part_low, part_size, layer, source_width, source_height, decode_srgb, wrap_u, wrap_v,
+            divisor, reserved,
         }
     }
 }
@@ -165,7 +166,7 @@ mod tests {
     }
 
     /// What a host was compiled with, beside comments: a change of it is another version of the ABI.
-    const ABI: (u32, &str) = (2, "19de857e3de6e070");
+    const ABI: (u32, &str) = (2, "f7b663413d7850d6");
 
     #[test]
     fn another_abi_has_another_version() {

@@ -61,8 +61,7 @@ pub fn filtered(filter: Filter, light: &LobeSpaceLight, lookup: impl Fn(DVec2, f
     }
 }
 
-/// The constants of a footprint. Found by search over the poses of `tests/oracle/footprints.rs`, through the
-/// pyramid.
+/// The constants of a footprint. Found by search over `shading::poses`, through the pyramid.
 struct Shape {
     /// The lobe's bump: its variance is the squared distance to the point seen, over this.
     bump: f64,

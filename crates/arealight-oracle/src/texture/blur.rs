@@ -50,46 +50,25 @@ impl Blur {
     }
 }
 
-impl Texture {
-    /// The texture at a coordinate, blurred with a Gaussian of standard deviations `sigma` in texture
-    /// coordinates.
-    pub fn blurred(&self, uv: DVec2, sigma: DVec2) -> DVec3 {
-        // Fold columns as they come: the grid's way would fold all rows
-        let columns = Weights::new(uv.x, sigma.x, self.width());
-        let rows = Weights::new(uv.y, sigma.y, self.height());
-        rows.apply(|row| columns.apply(|column| self.texels()[row * self.width() + column]))
-    }
-}
-
-/// Shares of consecutive texels.
-struct Weights {
-    first: usize,
-    shares: Vec<f64>,
-}
+/// Shares of texels.
+struct Weights(Vec<f64>);
 
 impl Weights {
     fn new(coordinate: f64, sigma: f64, count: usize) -> Self {
         let (center, sigma) = (coordinate * count as f64 - 0.5, (sigma * count as f64).max(0.0));
         let reach = REACH * sigma + 1.0;
-        let (low, high) = ((center - reach).floor() as isize, (center + reach).ceil() as isize);
+        let mut shares = vec![0.0; count];
         // Beyond the edges the texels come again
-        let within = low >= 0 && high < count.cast_signed();
-        let (first, taken) =
-            if within { (low.cast_unsigned(), (high - low + 1).cast_unsigned()) } else { (0, count) };
-        let mut shares = vec![0.0; taken];
-        for index in low..=high {
-            shares[mirrored(index, count).cast_unsigned() - first] +=
+        for index in (center - reach).floor() as isize..=(center + reach).ceil() as isize {
+            shares[mirrored(index, count).cast_unsigned()] +=
                 tent_under_gaussian(index as f64 - center, sigma);
         }
         let sum: f64 = shares.iter().sum();
-        for share in &mut shares {
-            *share /= sum;
-        }
-        Self { first, shares }
+        Self(shares.into_iter().map(|share| share / sum).collect())
     }
 
     fn apply(&self, texel: impl Fn(usize) -> DVec3) -> DVec3 {
-        self.shares.iter().enumerate().map(|(i, share)| texel(self.first + i) * *share).sum()
+        self.0.iter().enumerate().map(|(i, share)| texel(i) * *share).sum()
     }
 }
 

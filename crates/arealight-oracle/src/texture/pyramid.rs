@@ -14,14 +14,9 @@ pub struct Pyramid {
 impl Pyramid {
     /// Filters `texture`, which is resampled where it has another size.
     pub fn new(texture: &Texture, size: PyramidSize) -> Self {
-        let [width, height] = size.extent(0).map(|side| side as usize);
-        let first = if (texture.width(), texture.height()) == (width, height) {
-            texture.clone()
-        } else {
-            texture.resampled(width, height)
-        };
         // Each level from the one before
-        let mut levels = vec![first];
+        let side = size.side(0) as usize;
+        let mut levels = vec![texture.resampled(side, side)];
         for level in 1..size.levels() {
             levels.push(halved(&levels[level as usize - 1], size, level));
         }
@@ -51,8 +46,7 @@ impl Pyramid {
     /// light that shows `shown` of the image and whose metric makes a texel as long in both directions:
     /// `sigma` is in units of the square root of the shown area.
     pub fn blurred(&self, uv: DVec2, sigma: f64, shown: DVec2) -> DVec3 {
-        let [width, height] = self.size.extent(0).map(f64::from);
-        let texels = (width * shown.x * height * shown.y).sqrt();
+        let texels = f64::from(self.size.side(0)) * (shown.x * shown.y).sqrt();
         self.lookup(uv, self.size.level_of(sigma * texels))
     }
 }
@@ -60,16 +54,16 @@ impl Pyramid {
 /// Half the texels a side: the kernel of `level` along both axes, mirrored beyond the border.
 fn halved(finer: &Texture, size: PyramidSize, level: u32) -> Texture {
     let weights = size.weights(level);
-    let [width, height] = size.extent(level).map(|side| side as usize);
+    let side = size.side(level) as usize;
     let filtered = |texel: &dyn Fn(isize) -> DVec3, index: usize| -> DVec3 {
         let middle = 2 * index.cast_signed();
         let taps = weights.iter().take(size.taps(level) as usize).zip(0_isize..);
         taps.map(|(weight, i)| (texel(middle - i) + texel(middle + 1 + i)) * f64::from(*weight)).sum()
     };
-    let narrowed = Texture::from_fn(width, finer.height(), |column, row| {
+    let narrowed = Texture::from_fn(side, finer.height(), |column, row| {
         filtered(&|tap| finer.texel(mirrored(tap, finer.width()), row.cast_signed()), column)
     });
-    Texture::from_fn(width, height, |column, row| {
+    Texture::from_fn(side, side, |column, row| {
         filtered(&|tap| narrowed.texel(column.cast_signed(), mirrored(tap, narrowed.height())), row)
     })
 }

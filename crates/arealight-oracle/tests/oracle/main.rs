@@ -5,7 +5,6 @@ mod coat;
 mod common;
 mod coupled;
 mod ellipse;
-mod footprints;
 mod ggx;
 mod half_vectors;
 mod ltsd;

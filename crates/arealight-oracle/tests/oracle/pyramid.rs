@@ -48,7 +48,7 @@ fn blurs() -> impl Iterator<Item = f64> {
 }
 
 fn size() -> PyramidSize {
-    PyramidSize::new(SIDE as u32, SIDE as u32).unwrap()
+    PyramidSize::new(SIDE as u32).unwrap()
 }
 
 /// The mean over all blurs, and the largest.

@@ -41,7 +41,7 @@ struct ArealightImage {
 // coordinates, level explicit; textureLod of an array image.
 vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level);
 // Width and height of level 0, in texels.
-ivec2 arealight_bridge_light_texture_size();
+int arealight_bridge_light_texture_side();
 
 // ArealightLobeImage.end of lights that fill the box of their image, and of ellipses in its middle.
 const float AREALIGHT_IMAGE_END = 6.0;
@@ -72,10 +72,10 @@ ArealightLobeImage arealight_lobe_image(ArealightImage image, vec3 center, mat3 
     seen.axis_u = transform * image.axis_u;
     seen.axis_v = transform * image.axis_v;
     seen.normal = cross(seen.axis_u, seen.axis_v);
-    ivec2 size = arealight_bridge_light_texture_size();
-    seen.texels = vec2(size) * image.size;
-    // The last level is four texels wide or high
-    seen.last = float(findMSB(min(size.x, size.y)) - 2);
+    int side = arealight_bridge_light_texture_side();
+    seen.texels = float(side) * image.size;
+    // The last level is four texels wide
+    seen.last = float(findMSB(side) - 2);
     seen.end = AREALIGHT_IMAGE_END;
     return seen;
 }

@@ -284,7 +284,7 @@ fn the_texture_kernels_constants_have_the_same_offsets() {
         (
             &kernels::TEXTURE_LOAD,
             "TextureLoadConstants",
-            layout!(gpu::TextureLoadConstants, first_texel, first_offset, stride, flags, layer),
+            layout!(gpu::TextureLoadConstants, first_texel, first_offset, stride, flags, layer, factor),
         ),
         (
             &kernels::TEXTURE_BLUR,

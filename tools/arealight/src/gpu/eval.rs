@@ -2,12 +2,13 @@
 
 use super::{LazyEngine, failure};
 use crate::failure::Failure;
-use arealight::{Light, LightShape, LightTexture, Quality};
+use arealight::{Light, LightShape, LightTexture, Quality, TexturePart};
+use arealight_benches::pictures;
 use arealight_cases::answers::Answer;
 use arealight_cases::cases::SupportedCase;
 use arealight_engine::{Engine, EngineError, EvalPoint};
 use arealight_oracle::texture::Texture;
-use glam::DVec3;
+use glam::{DVec2, DVec3, Vec3};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -30,8 +31,8 @@ pub fn answer(
         Vec::new()
     } else {
         let engine = engine.get()?;
-        images.load(engine).map_err(|error| failure(error, input))?;
-        engine.eval(&shaded, quality).map_err(|error| failure(error, input))?
+        let eval = |engine: &Engine, points: &[EvalPoint]| engine.eval(points, quality);
+        images.answers(engine, &shaded, eval).map_err(|error| failure(error, input))?
     };
     // Put the reasons in between
     let mut radiance = radiance.into_iter();
@@ -48,42 +49,63 @@ pub fn answer(
 /// A case's light is relative to its shading point already.
 fn point(case: &SupportedCase, images: &mut Images) -> EvalPoint {
     let shown = case.light.image.as_ref().zip(case.texture.as_ref());
-    EvalPoint {
-        surface: case.surface,
-        position: DVec3::ZERO,
-        normal: case.normal,
-        view: case.view,
-        light: Light {
-            name: case.name.clone(),
-            shape: LightShape::Polygon(case.light.vertices.clone()),
-            radiance: case.light.radiance.as_vec3(),
-            two_sided: case.light.two_sided,
-            texture: shown.map(|(image, texture)| LightTexture {
-                layer: images.layer(&image.texture),
-                uvs: texture.uv.clone(),
-            }),
-        },
+    let mut light = Light {
+        name: case.name.clone(),
+        shape: LightShape::Polygon(case.light.vertices.clone()),
+        radiance: case.light.radiance.as_vec3(),
+        two_sided: case.light.two_sided,
+        texture: None,
+    };
+    if let Some((image, texture)) = shown {
+        images.show(&mut light, &image.texture, texture.uv.clone());
     }
+    EvalPoint { surface: case.surface, position: DVec3::ZERO, normal: case.normal, view: case.view, light }
 }
 
-/// The images that lights show, a layer each.
+/// The images that lights show.
 #[derive(Default)]
 pub struct Images {
-    layers: Vec<Arc<Texture>>,
+    known: Vec<Arc<Texture>>,
+}
+
+/// What the texels of an image are divided by, and its lights multiplied with.
+fn divisor(image: &Texture) -> f32 {
+    TexturePart::divisor_of(image.brightest() as f32)
 }
 
 impl Images {
-    /// The layer of an image.
-    pub fn layer(&mut self, image: &Arc<Texture>) -> u32 {
-        let known = self.layers.iter().position(|layer| Arc::ptr_eq(layer, image));
-        known.unwrap_or_else(|| {
-            self.layers.push(Arc::clone(image));
-            self.layers.len() - 1
-        }) as u32
+    /// Lets a light show an image: its layer is its number among all.
+    pub fn show(&mut self, light: &mut Light, image: &Arc<Texture>, uvs: Vec<DVec2>) {
+        let known = self.known.iter().position(|known| Arc::ptr_eq(known, image));
+        let layer = known.unwrap_or_else(|| {
+            self.known.push(Arc::clone(image));
+            self.known.len() - 1
+        }) as u32;
+        light.texture = Some(LightTexture { layer, uvs });
+        light.radiance *= divisor(image);
     }
 
-    /// Loads them, in place of those there were.
-    pub fn load(&self, engine: &mut Engine) -> Result<(), EngineError> {
-        arealight_benches::pictures::load(engine, &self.layers)
+    /// The answers of points, in their order, an image at a time: none depends on the others.
+    pub fn answers(
+        &self,
+        engine: &mut Engine,
+        points: &[EvalPoint],
+        answer: impl Fn(&Engine, &[EvalPoint]) -> Result<Vec<Vec3>, EngineError>,
+    ) -> Result<Vec<Vec3>, EngineError> {
+        let mut answers = vec![Vec3::ZERO; points.len()];
+        let layer = |point: &EvalPoint| point.light.texture.as_ref().map(|texture| texture.layer as usize);
+        for image in (0..self.known.len()).map(Some).chain([None]) {
+            let indices: Vec<usize> = (0..points.len()).filter(|i| layer(&points[*i]) == image).collect();
+            let mut shown: Vec<EvalPoint> = indices.iter().map(|i| points[*i].clone()).collect();
+            for texture in shown.iter_mut().filter_map(|point| point.light.texture.as_mut()) {
+                texture.layer = 0;
+            }
+            let images: Vec<_> = image.map(|image| Arc::clone(&self.known[image])).into_iter().collect();
+            pictures::load(engine, &images, divisor)?;
+            for (index, radiance) in indices.into_iter().zip(answer(engine, &shown)?) {
+                answers[index] = radiance;
+            }
+        }
+        Ok(answers)
     }
 }

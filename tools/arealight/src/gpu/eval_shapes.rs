@@ -3,10 +3,10 @@
 use super::eval::Images;
 use super::{LazyEngine, failure};
 use crate::failure::Failure;
-use arealight::{Light, LightTexture, Quality};
+use arealight::Quality;
 use arealight_cases::answers::Answer;
 use arealight_cases::cases::ShapeCase;
-use arealight_engine::EvalPoint;
+use arealight_engine::{Engine, EvalPoint};
 use glam::DVec3;
 use std::path::Path;
 
@@ -24,20 +24,17 @@ pub fn answer(
     let mut images = Images::default();
     let points: Vec<EvalPoint> = cases.iter().map(|case| point(case, &mut images)).collect();
     let engine = engine.get()?;
-    images.load(engine).map_err(|error| failure(error, input))?;
-    let radiance = engine.eval_shapes(&points, quality).map_err(|error| failure(error, input))?;
+    let eval = |engine: &Engine, points: &[EvalPoint]| engine.eval_shapes(points, quality);
+    let radiance = images.answers(engine, &points, eval).map_err(|error| failure(error, input))?;
     let answers = cases.iter().zip(radiance);
     Ok(answers.map(|(case, radiance)| Answer::new(&case.name, radiance.as_dvec3())).collect())
 }
 
 /// A case's light is relative to its shading point already.
 fn point(case: &ShapeCase, images: &mut Images) -> EvalPoint {
-    let texture = case.image.as_ref().map(|image| LightTexture { layer: images.layer(image), uvs: vec![] });
-    EvalPoint {
-        surface: case.surface,
-        position: DVec3::ZERO,
-        normal: case.normal,
-        view: case.view,
-        light: Light { texture, ..case.light.clone() },
+    let mut light = case.light.clone();
+    if let Some(image) = &case.image {
+        images.show(&mut light, image, vec![]);
     }
+    EvalPoint { surface: case.surface, position: DVec3::ZERO, normal: case.normal, view: case.view, light }
 }

@@ -471,3 +471,50 @@ fn cases_and_answers_go_through_pipes() {
     assert!(piped.stdout == plain.stdout, "{} bytes, not {}", piped.stdout.len(), plain.stdout.len());
     assert!(said.contains("family") && said.contains("worst"), "{said}");
 }
+
+#[test]
+fn an_image_keeps_its_range_whatever_the_other_images_are() {
+    if !device() {
+        return;
+    }
+    let mut cases = vec![];
+    for (name, [width, height], brightest) in [
+        ("room", [64, 64], 1.0),
+        ("banner", [512, 32], 1.0),
+        ("sun", [32, 20], 1e6),
+        ("night", [32, 32], 1e-6),
+    ] {
+        let texel = |x: usize, y: usize| {
+            let share = brightest * (1 + (x * 5 / width + y * 3 / height) % 4) as f32;
+            (share, 0.5 * share, 0.01 * share)
+        };
+        exr::prelude::write_rgb_file(temporary(&format!("{name}.exr")), width, height, texel).unwrap();
+        let across = width as f64 / height as f64;
+        let corner = |x: f64, y: f64| [x * across, y, 2.0];
+        let vertices = [corner(-0.5, -0.5), corner(-0.5, 0.5), corner(0.5, 0.5), corner(0.5, -0.5)];
+        cases.push(serde_json::json!({
+            "name": name, "position": [0, 0, 0], "normal": [0, 0, 1], "view": [0, 0.3, 1],
+            "bsdf": "diffuse", "albedo": [1, 1, 1],
+            "light": {
+                "type": "polygon", "radiance": [1, 1, 1], "vertices": vertices,
+                "texture": format!("{name}.exr"), "uv": [[0, 1], [0, 0], [1, 0], [1, 1]],
+            },
+        }));
+    }
+    let answers = |cases: &[Value], on: &str| -> Vec<Value> {
+        let file = write("images.json", &serde_json::json!({ "cases": cases }).to_string());
+        let output = eval(&[&file, "--on", on, "--footprint", "split"]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let answers: Value = serde_json::from_slice(&output.stdout).unwrap();
+        answers["results"].as_array().unwrap().clone()
+    };
+    let both = answers(&cases, "gpu").into_iter().zip(answers(&cases, "oracle"));
+    for (case, (found, exact)) in cases.iter().zip(both) {
+        assert_eq!(answers(std::slice::from_ref(case), "gpu")[0], found);
+        for channel in 0..3 {
+            let of = |answer: &Value| answer["radiance"][channel].as_f64().unwrap();
+            // A sampler weighs texels and levels by eight bits
+            assert!((of(&found) / of(&exact) - 1.0).abs() < 5e-3, "{found}, {exact}");
+        }
+    }
+}

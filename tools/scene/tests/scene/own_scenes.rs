@@ -160,7 +160,7 @@ fn the_screen_shows_a_test_card_to_a_floor_of_all_roughnesses() {
         light.texture.as_ref().map(|texture| texture.layer)
     };
     assert_eq!([layer("television"), layer("sign"), layer("lamp")], [Some(0), Some(1), None]);
-    assert_eq!(scene.light_texture_size(1024).unwrap().extent(0), [512, 512]);
+    assert_eq!(scene.light_texture_size(1024).unwrap().side(0), 512);
     // The camera sees the card's red corner on the upper left, the green one on its right
     let card = scene.light_texture_source(0).unwrap();
     assert_eq!([card.width, card.height], [512, 288]);

@@ -77,7 +77,7 @@ fn a_screen_shows_its_whole_image() {
     // What to load
     let source = scene.light_texture_source(0).unwrap();
     assert_eq!((source.width, source.height, source.srgb), (64, 32, true));
-    let part = TexturePart { low: layer.low, size: layer.size, wrap: [Wrap::Repeat; 2] };
+    let part = TexturePart { low: layer.low, size: layer.size, wrap: [Wrap::Repeat; 2], divisor: 1.0 };
     assert_eq!(source.part, part);
     assert_eq!(source.texels[64 * 3 + 5].to_le_bytes(), [20, 24, 40, 255]);
     assert_eq!(scene.light_texture_source(1), None);
@@ -379,14 +379,14 @@ fn there_are_only_so_many_layers() {
 fn one_size_fits_all_layers() {
     let wide = RgbImage::from_fn(700, 90, |x, y| Rgb([x as u8, y as u8, 90]));
     let size = |shape: Shape, largest: u32| {
-        scene_of(&wide, &[shape], &json!({})).light_texture_size(largest).map(|size| size.extent(0))
+        scene_of(&wide, &[shape], &json!({})).light_texture_size(largest).map(|size| size.side(0))
     };
-    assert_eq!(size(screen(|uv| uv), 4096), Some([1024, 128]));
-    assert_eq!(size(screen(|uv| uv), 512), Some([512, 128]));
-    assert_eq!(size(screen(|uv| uv), 700), Some([512, 128]), "not beyond what is asked for");
-    assert_eq!(size(screen(|uv| uv), 0), Some([64, 64]));
-    assert_eq!(size(screen(|uv| uv * 0.3), 4096), Some([256, 64]));
-    assert_eq!(size(screen(|uv| uv * 8.0), u32::MAX), Some([4096, 1024]));
+    assert_eq!(size(screen(|uv| uv), 4096), Some(1024));
+    assert_eq!(size(screen(|uv| uv), 512), Some(512));
+    assert_eq!(size(screen(|uv| uv), 700), Some(512), "not beyond what is asked for");
+    assert_eq!(size(screen(|uv| uv), 0), Some(64));
+    assert_eq!(size(screen(|uv| uv * 0.3), 4096), Some(256));
+    assert_eq!(size(screen(|uv| uv * 8.0), u32::MAX), Some(4096));
     assert_eq!(size(screen(|_| DVec2::splat(0.4)), 4096), None);
 }
 

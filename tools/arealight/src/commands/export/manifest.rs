@@ -91,7 +91,7 @@ fn memory() -> Value {
     let table = arealight::LightTable::ggx();
     let bytes = |format: TableFormat| format.bytes(&table).len();
     let layer = |side: u32| {
-        let size = PyramidSize::new(side, side).ok()?;
+        let size = PyramidSize::new(side).ok()?;
         // Four channels of 16 bits
         Some((format!("{side} x {side}"), json!(size.texels() * 8)))
     };

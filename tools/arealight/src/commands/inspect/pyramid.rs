@@ -21,25 +21,14 @@ pub struct Pyramid {
     /// The file, and what of it.
     pub name: String,
     pub size: PyramidSize,
-    pub levels: Vec<Level>,
+    /// Of each, linear light, row after row from the top.
+    pub levels: Vec<Vec<[f32; 4]>>,
 }
 
-/// A level.
-pub struct Level {
-    /// Width and height in texels.
-    pub extent: [u32; 2],
-    /// The standard deviation of its blur, in texels of level 0.
-    pub blur: f64,
-    /// Linear light, row after row from the top.
-    pub texels: Vec<[f32; 4]>,
-}
-
-impl Level {
-    /// The mean: that of the image, on every level.
-    fn mean(&self) -> DVec3 {
-        let texels = self.texels.iter().map(|[r, g, b, _]| DVec3::new((*r).into(), (*g).into(), (*b).into()));
-        texels.sum::<DVec3>() / self.texels.len() as f64
-    }
+/// The mean of a level: that of the image.
+fn mean(level: &[[f32; 4]]) -> DVec3 {
+    let texels = level.iter().map(|[r, g, b, _]| DVec3::new((*r).into(), (*g).into(), (*b).into()));
+    texels.sum::<DVec3>() / level.len() as f64
 }
 
 /// Prefilters an image, or layer `layer` of a scene's light textures, on a device.
@@ -97,11 +86,8 @@ fn layer_name(path: &Path, scene: &Scene, layer: u32) -> Result<String, Failure>
 
 fn read_back(engine: &Engine, name: String, layer: u32) -> Result<Pyramid, EngineError> {
     let size = engine.texture_size().expect("textures were loaded");
-    let level = |level: u32| -> Result<Level, EngineError> {
-        let (extent, blur) = (size.extent(level), size.blur(level));
-        Ok(Level { extent, blur, texels: engine.download_level(layer, level)? })
-    };
-    let levels = (0..size.levels()).map(level).collect::<Result<_, _>>()?;
+    let levels = (0..size.levels()).map(|level| engine.download_level(layer, level));
+    let levels = levels.collect::<Result<_, _>>()?;
     Ok(Pyramid { name, size, levels })
 }
 
@@ -163,41 +149,40 @@ impl Loaded {
 }
 
 impl Pyramid {
-    /// A level's blur in units of the image's size, the geometric mean of both sides.
-    pub fn share(&self, level: &Level) -> f64 {
-        let [width, height] = self.size.extent(0).map(f64::from);
-        level.blur / (width * height).sqrt()
+    /// The levels with their sides in texels, and their blurs in texels of level 0 and in sizes of the image.
+    fn levels(&self) -> impl Iterator<Item = (&[[f32; 4]], u32, f64, f64)> {
+        self.levels.iter().zip(0..).map(|(texels, level)| {
+            let blur = self.size.blur(level);
+            (texels.as_slice(), self.size.side(level), blur, blur / f64::from(self.size.side(0)))
+        })
     }
 
     /// The levels, for a picture: what makes the brightest texel white is said where it is not 1.
     pub fn found(&self) -> Value {
-        let texels = self.levels[0].texels.iter().flat_map(|texel| &texel[..3]);
+        let texels = self.levels[0].iter().flat_map(|texel| &texel[..3]);
         let peak = texels.fold(1.0_f32, |peak, channel| peak.max(*channel));
         let white = if peak > 1.0 { format!("; white is {peak:.3}") } else { String::new() };
-        let [width, height] = self.size.extent(0);
-        let level = |level: &Level| {
-            let channels = level.texels.iter().flat_map(|[r, g, b, _]| [r, g, b]);
+        let side = self.size.side(0);
+        let level = |(texels, side, blur, share): (&[[f32; 4]], u32, f64, f64)| {
+            let channels = texels.iter().flat_map(|[r, g, b, _]| [r, g, b]);
             let bytes: Vec<u8> = channels.map(|channel| srgb_from_linear(channel / peak)).collect();
-            json!({ "size": level.extent, "blur": level.blur, "share": self.share(level),
-                "srgb": bytes_of(&bytes) })
+            json!({ "size": [side, side], "blur": blur, "share": share, "srgb": bytes_of(&bytes) })
         };
         json!({
-            "title": format!("{}\n{width} x {height} texels{white}", self.name),
-            "size": [width, height],
-            "levels": self.levels.iter().map(level).collect::<Value>(),
+            "title": format!("{}\n{side} x {side} texels{white}", self.name),
+            "size": [side, side],
+            "levels": self.levels().map(level).collect::<Value>(),
         })
     }
 
     pub fn to_text(&self) -> String {
-        let [width, height] = self.size.extent(0);
+        let side = self.size.side(0);
         let mut text =
-            format!("{}\nsize  {width} x {height} texels, {} in all\n\n", self.name, self.size.texels());
+            format!("{}\nsize  {side} x {side} texels, {} in all\n\n", self.name, self.size.texels());
         let [level, extent, blur, share] = ["level", "extent", "blur/texels", "blur/size"];
         let _ = writeln!(text, "{level:<6} {extent:>11} {blur:>12} {share:>10}  mean");
-        for (number, level) in self.levels.iter().enumerate() {
-            let mean = level.mean();
-            let extent = format!("{} x {}", level.extent[0], level.extent[1]);
-            let (blur, share) = (level.blur, self.share(level));
+        for (number, (texels, side, blur, share)) in self.levels().enumerate() {
+            let (mean, extent) = (mean(texels), format!("{side} x {side}"));
             let _ = writeln!(
                 text,
                 "{number:<6} {extent:>11} {blur:>12.2} {share:>10.4}  {:.4} {:.4} {:.4}",
@@ -209,18 +194,15 @@ impl Pyramid {
     }
 
     pub fn to_json(&self) -> String {
-        let level = |level: &Level| {
+        let level = |(texels, side, blur, share): (&[[f32; 4]], u32, f64, f64)| {
             json!({
-                "extent": level.extent,
-                "blur_texels": level.blur,
-                "blur": self.share(level),
-                "mean": level.mean().to_array(),
+                "extent": [side, side], "blur_texels": blur, "blur": share, "mean": mean(texels).to_array(),
             })
         };
         let summary = json!({
             "texture": self.name,
-            "size": self.size.extent(0),
-            "levels": self.levels.iter().map(level).collect::<Value>(),
+            "size": [self.size.side(0), self.size.side(0)],
+            "levels": self.levels().map(level).collect::<Value>(),
         });
         format!("{summary:#}\n")
     }
@@ -232,20 +214,16 @@ mod tests {
 
     #[test]
     fn bright_images_are_exposed_to_their_peak() {
-        let size = PyramidSize::new(128, 64).unwrap();
+        let size = PyramidSize::new(128).unwrap();
         let level = |peak: f32| {
-            let mut texels = vec![[0.0, 0.0, 0.0, 99.0]; 128 * 64];
+            let mut texels = vec![[0.0, 0.0, 0.0, 99.0]; 128 * 128];
             texels[7] = [0.5, peak, 0.0, 99.0];
-            Pyramid {
-                name: "a".into(),
-                size,
-                levels: vec![Level { extent: size.extent(0), blur: 0.0, texels }],
-            }
+            Pyramid { name: "a".into(), size, levels: vec![texels] }
         };
         let (bright, other) = (level(16.0).found(), level(0.5).found());
-        assert_eq!(bright["title"], "a\n128 x 64 texels; white is 16.000");
-        assert_eq!(other["title"], "a\n128 x 64 texels");
-        let mut bytes = vec![0; 3 * 128 * 64];
+        assert_eq!(bright["title"], "a\n128 x 128 texels; white is 16.000");
+        assert_eq!(other["title"], "a\n128 x 128 texels");
+        let mut bytes = vec![0; 3 * 128 * 128];
         bytes[21..24].copy_from_slice(&[0.5 / 16.0, 1.0, 0.0].map(srgb_from_linear));
         assert_eq!(bright["levels"][0]["srgb"], bytes_of(&bytes));
         bytes[21..24].copy_from_slice(&[0.5, 0.5, 0.0].map(srgb_from_linear));
