@@ -94,7 +94,7 @@ fn the_manifest_says_what_a_host_defines_and_binds() {
         .iter()
         .filter(|bridge| bridge["declared_in"].as_str().unwrap().starts_with("kernels/"))
         .count();
-    assert_eq!(of_kernels, 3, "a surface, what blocks, what arrives");
+    assert_eq!(of_kernels, 4, "a surface, what blocks, how much of it is there, what arrives");
     assert_eq!(needed("arealight/arealight.glsl"), bridges.len() - of_kernels);
     assert_eq!(needed("arealight/surface.glsl"), 0);
     let shade = &manifest["kernels"]["shade"];
