@@ -11,7 +11,7 @@ layout(set = 0, binding = 0) uniform sampler2DArray table;
 layout(set = 0, binding = 1) uniform sampler2D g_buffer[3];
 layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D radiance_image;
 struct Lamp { vec3 radiance; float reserved0; vec3 center; float reserved1; vec3 normal; float reserved2;
-    vec4 vertices[4]; };
+    vec4 vertices[4]; vec4 padding; };
 layout(set = 0, binding = 3, std430) readonly buffer Lamps { Lamp lamps[]; };
 layout(push_constant) uniform Frame { vec3 camera; uint lamp_count; } frame;
 

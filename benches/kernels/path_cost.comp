@@ -12,18 +12,21 @@ layout(set = 0, binding = 0) uniform sampler2DArray table;
 layout(set = 0, binding = 1) uniform sampler2D g_buffer[3];
 layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D radiance_image;
 struct Lamp { vec3 radiance; float reserved0; vec3 center; float reserved1; vec3 normal; float reserved2;
-    vec4 vertices[4]; };
+    vec4 vertices[4]; vec4 padding; };
 layout(set = 0, binding = 3, std430) readonly buffer Lamps { Lamp lamps[]; };
 layout(push_constant) uniform Frame { vec3 camera; uint lamp_count; } frame;
 
 // The same values as in benches/src/model/costs.rs.
 const int METHOD_EXACT = 0;
 const int METHOD_CLIPLESS = 1;
-const int PATH_BELOW = 0; // the tests alone
-const int PATH_ABOVE = 1;
-const int PATH_CROSSING_1 = 2; // with one vertex above
-const int PATH_CROSSING_2 = 3;
-const int PATH_CROSSING_3 = 4;
+const int PATH_TESTED = 0;     // whether it is above alone
+const int PATH_BELOW = 1;
+const int PATH_ACUTE = 2;      // above the horizon, in all invocations with acute edges
+const int PATH_NOT_ACUTE = 3;  // in none
+const int PATH_MIXED = 4;      // in some
+const int PATH_CROSSING_1 = 5; // with one vertex above
+const int PATH_CROSSING_2 = 6;
+const int PATH_CROSSING_3 = 7;
 
 layout(constant_id = 0) const int METHOD = METHOD_EXACT;
 layout(constant_id = 1) const bool IN_FRONT = true; // else behind the light
@@ -60,17 +63,27 @@ vec3 crossing(ArealightQuad quad, int above) {
     return arcs + arealight_horizon_arc(exit.xy, entry.xy, -arcs.z, 1.0);
 }
 
-// The arcs around a quad that is wholly above the horizon, as in arealight_quad_vector.
-vec3 arcs_above(ArealightQuad quad) {
-    vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c),
-        d = arealight_unit(quad.d);
-    return arealight_arc(a, b) + arealight_arc(b, c) + arealight_arc(c, d) + arealight_arc(d, a);
+// The arcs of a quad above the horizon where the edges of all invocations, none or some are acute.
+vec3 arcs_above(ArealightQuad quad, int path) {
+    vec4 products = vec4(dot(quad.a, quad.b), dot(quad.b, quad.c), dot(quad.c, quad.d), dot(quad.d, quad.a));
+    vec3 arcs = vec3(0.0, 0.0, min(min(products.x, products.y), min(products.z, products.w)));
+    if (path != PATH_NOT_ACUTE) {
+        arcs += arealight_acute_arcs(quad, products);
+    }
+    if (path != PATH_ACUTE) {
+        vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c),
+            d = arealight_unit(quad.d);
+        arcs += arealight_arc(a, b) + arealight_arc(b, c) + arealight_arc(c, d) + arealight_arc(d, a);
+    }
+    return arcs;
 }
 
 vec3 arcs_by(int path, ArealightQuad quad) {
     switch (path) {
-    case PATH_ABOVE:
-        return arcs_above(quad);
+    case PATH_ACUTE:
+    case PATH_NOT_ACUTE:
+    case PATH_MIXED:
+        return arcs_above(quad, path);
     case PATH_CROSSING_1:
         return crossing(quad, 1);
     case PATH_CROSSING_2:
@@ -82,18 +95,21 @@ vec3 arcs_by(int path, ArealightQuad quad) {
     }
 }
 
-// A lobe's form factor by a path, behind both tests of arealight_quad_vector.
+// A lobe's form factor by a path, behind the tests of arealight_quad_vector that lead there.
 float lobe_form_factor(int path, mat3 space, ArealightLocalQuad local) {
     ArealightQuad quad = arealight_transformed(space, local.quad);
-    vec3 tested = vec3(0.0, 0.0, arealight_highest(quad) > 0.0 ? arealight_lowest(quad) : 0.0);
-    return arealight_form_factor(AREALIGHT_PER_ARC * (tested + arcs_by(path, quad)));
+    float tested = arealight_lowest(quad);
+    if (path == PATH_BELOW || path >= PATH_CROSSING_1) {
+        tested = tested > 0.0 ? tested : arealight_highest(quad);
+    }
+    return arealight_form_factor(AREALIGHT_PER_ARC * (vec3(0.0, 0.0, tested) + arcs_by(path, quad)));
 }
 
 vec3 exact(ArealightPoint point, uint index) {
     ArealightQuad quad = ArealightQuad(lamps[index].vertices[0].xyz, lamps[index].vertices[1].xyz,
                                        lamps[index].vertices[2].xyz, lamps[index].vertices[3].xyz);
     vec3 offset = lamps[index].center - point.position;
-    float side = arealight_lit_side(offset, lamps[index].normal, false);
+    float side = arealight_lit_side(offset, lamps[index].normal, false, 0.0);
     vec3 radiance = vec3(side, 0.0, 0.0);
     if (IN_FRONT) {
         // Scalar units do this beside the rest; by itself it would be what the compiler's estimate tells

@@ -37,20 +37,23 @@ const uint LIGHTS_PER_WAVE = 32u;
 const uint BEHIND = 1u; // or in the light's plane
 const uint IN_FRONT = 2u;
 const int LOBE_SHIFT = 2;
-const int LOBE_BITS = 5;
+const int LOBE_BITS = 6;
 const uint BELOW = 1u;
-const uint ABOVE = 2u;
-const uint CROSSING_1 = 4u; // with one vertex above; with two and three the next bits
+const uint ACUTE = 2u; // above the horizon, seen with acute edges
+const uint NOT_ACUTE = 4u;
+const uint CROSSING_1 = 8u; // with one vertex above; with two and three the next bits
 
 shared uint wave_paths[8u / ROWS_PER_WAVE];
 
 // The path of arealight_quad_vector.
 uint quad_path(ArealightQuad quad) {
+    if (arealight_lowest(quad) > 0.0) {
+        vec4 cosine = vec4(dot(quad.a, quad.b), dot(quad.b, quad.c), dot(quad.c, quad.d),
+                           dot(quad.d, quad.a));
+        return all(greaterThan(cosine, vec4(0.0))) ? ACUTE : NOT_ACUTE;
+    }
     if (!(arealight_highest(quad) > 0.0)) {
         return BELOW;
-    }
-    if (arealight_lowest(quad) > 0.0) {
-        return ABOVE;
     }
     ArealightQuad turned = arealight_turned(quad);
     return CROSSING_1 << (turned.b.z > 0.0 ? (turned.c.z > 0.0 ? 2 : 1) : 0);

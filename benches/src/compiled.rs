@@ -52,8 +52,10 @@ pub struct Measured {
     pub sgprs: u64,
     /// How many waves a SIMD holds at a time.
     pub waves: u64,
-    /// Registers that did not fit and went to memory.
-    pub spills: u64,
+    /// Vector registers that did not fit and went to memory.
+    pub spilled_vgprs: u64,
+    /// Scalar registers that did not fit and went to lanes of vector registers.
+    pub spilled_sgprs: u64,
     /// Memory of its own a wave, in bytes.
     pub scratch: u64,
     /// Instructions.
@@ -82,7 +84,8 @@ impl Measured {
             vgprs: said.vgprs,
             sgprs: said.sgprs,
             waves: said.waves,
-            spills: said.spills,
+            spilled_vgprs: said.spilled_vgprs,
+            spilled_sgprs: said.spilled_sgprs,
             scratch: said.scratch,
             instructions: said.instructions,
             branches: said.branches,

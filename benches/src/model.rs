@@ -65,7 +65,7 @@ impl Paths {
     /// In front of it.
     pub const IN_FRONT: Self = Self(2);
     const LOBE_SHIFT: usize = 2;
-    const LOBE_BITS: usize = 5;
+    const LOBE_BITS: usize = 6;
 
     /// These, and in front of the light: the lobes' own.
     pub fn in_front(lobes: [LobePaths; LOBES]) -> Self {
@@ -95,10 +95,12 @@ pub struct LobePaths(pub u32);
 impl LobePaths {
     /// Wholly below the lobe's horizon.
     pub const BELOW: Self = Self(1);
-    /// Wholly above it.
-    pub const ABOVE: Self = Self(2);
+    /// Wholly above it, seen with acute edges.
+    pub const ACUTE: Self = Self(2);
+    /// Wholly above it, seen with an edge that is not.
+    pub const NOT_ACUTE: Self = Self(4);
     /// Crossing it, with one, two and three vertices above.
-    pub const CROSSING: [Self; 3] = [Self(4), Self(8), Self(16)];
+    pub const CROSSING: [Self; 3] = [Self(8), Self(16), Self(32)];
 
     /// These and those.
     #[must_use]
@@ -117,14 +119,21 @@ impl LobePaths {
 
     /// Whether some invocation is wholly above it.
     pub const fn is_above(self) -> bool {
-        self.has(Self::ABOVE)
+        self.has(Self::ACUTE.and(Self::NOT_ACUTE))
     }
 
     /// What a wave pays.
     fn cost(self, costs: &LobeCosts) -> f64 {
-        let above = if self.is_above() { costs.above } else { 0.0 };
+        let [acute, not_acute, mixed] = costs.above;
+        let above = match (self.has(Self::ACUTE), self.has(Self::NOT_ACUTE)) {
+            (false, false) => 0.0,
+            (true, false) => acute,
+            (false, true) => not_acute,
+            (true, true) => mixed,
+        };
+        let below = if self.has(Self::BELOW) { costs.below } else { 0.0 };
         // The chain goes as far as the invocation with the most vertices above
-        above + self.most_above().map_or(0.0, |most| costs.crossing[most - 1])
+        above + self.most_above().map_or(below, |most| costs.crossing[most - 1])
     }
 
     /// The most vertices above the horizon of a quad that crosses it; `None` where no invocation has one.
@@ -268,11 +277,11 @@ mod tests {
     use super::*;
 
     const COSTS: Costs = {
-        let lobe = LobeCosts { above: 170.0, crossing: [180.0, 220.0, 260.0] };
+        let lobe = LobeCosts { below: 4.0, above: [170.0, 190.0, 300.0], crossing: [180.0, 220.0, 260.0] };
         Costs {
             exact: MethodCosts { pixel: 400.0, behind: 20.0, in_front: 100.0 },
             clipless: MethodCosts { pixel: 300.0, behind: 10.0, in_front: 600.0 },
-            lobes: [lobe, LobeCosts { above: 171.0, ..lobe }],
+            lobes: [lobe, LobeCosts { above: [171.0, 191.0, 301.0], ..lobe }],
         }
     };
 
@@ -302,7 +311,7 @@ mod tests {
 
     #[test]
     fn waves_without_a_surface_do_not_count() {
-        let above = Paths::in_front([LobePaths::ABOVE; LOBES]);
+        let above = Paths::in_front([LobePaths::ACUTE; LOBES]);
         let halves = [above, Paths::BEHIND, above, Paths::BEHIND];
         let found = counts(halves, Wave::Of32);
         assert_eq!((found.waves, found.by_light.len()), (3, 2));
@@ -317,17 +326,20 @@ mod tests {
     #[test]
     fn a_wave_pays_for_every_path_that_is_taken() {
         let lobes = |diffuse, specular| cost(Paths::in_front([diffuse, specular]));
-        let below = LobePaths::BELOW;
+        let (below, acute) = (LobePaths::BELOW, LobePaths::ACUTE);
         let of = |diffuse, specular| lobes(diffuse, specular).exact - 500.0;
-        assert!(near(of(below, below), 0.0));
-        assert!(near(of(LobePaths::ABOVE, below), 170.0));
-        assert!(near(of(below, LobePaths::ABOVE), 171.0), "each lobe its own");
-        assert!(near(of(LobePaths::ABOVE.and(below), below), 170.0));
+        assert!(near(of(below, below), 8.0));
+        assert!(near(of(acute, below), 174.0));
+        assert!(near(of(below, acute), 175.0), "each lobe its own");
+        assert!(near(of(acute.and(below), below), 178.0));
+        // One obtuse edge in a wave, and it pays for both ways
+        assert!(near(of(LobePaths::NOT_ACUTE, acute), 190.0 + 171.0));
+        assert!(near(of(LobePaths::NOT_ACUTE.and(acute), acute), 300.0 + 171.0));
         // The chain runs as far as the most vertices above; what is above is a side of its own
         let [one, _, three] = LobePaths::CROSSING;
-        assert!(near(of(one, below), 180.0));
-        assert!(near(of(one.and(three), below), 260.0));
-        assert!(near(of(one.and(LobePaths::ABOVE), below), 180.0 + 170.0));
+        assert!(near(of(one, acute), 180.0 + 171.0));
+        assert!(near(of(one.and(three).and(below), acute), 260.0 + 171.0));
+        assert!(near(of(one.and(acute), acute), 180.0 + 170.0 + 171.0));
     }
 
     #[test]

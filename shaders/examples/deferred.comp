@@ -7,8 +7,9 @@ layout(set = 0, binding = 0) uniform sampler2DArray table; // tables/ggx.ktx2; o
 // Position; normal, roughness; base colour, metalness
 layout(set = 0, binding = 1) uniform sampler2D g_buffer[3];
 layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D radiance_image;
+// 128 bytes: of a stride that is no power of two Adreno's compiler (Mesa 22.3) fuses no multiply and add
 struct Lamp { vec3 radiance; float reserved0; vec3 center; float reserved1; vec3 normal; float reserved2;
-    vec4 vertices[4]; };
+    vec4 vertices[4]; vec4 padding; };
 layout(set = 0, binding = 3, std430) readonly buffer Lamps { Lamp lamps[]; };
 layout(push_constant) uniform Frame { vec3 camera; uint lamp_count; } frame;
 

@@ -20,6 +20,7 @@ struct PickedLight {
     bool two_sided;
     vec3 cap;      // of a tube, the center of the flat end that is seen beside its side, from the point
     vec3 cap_axis; // along the tube, as long as its radius; zero where there is no such end
+    float error; // arealight_position_error
 };
 
 // The silhouette of a sphere, as a disk. A point inside of it has none.
@@ -67,6 +68,7 @@ void find_end(inout PickedLight light, vec3 half_axis, float radius) {
 
 PickedLight picked_light(uint pick, vec3 position) {
     PickedLight light;
+    light.error = arealight_position_error(position);
     light.is_mesh = false;
     light.cap_axis = vec3(0.0);
     light.row = 0u;
@@ -111,7 +113,7 @@ bool next_face(inout PickedLight light) {
         uint count = clamp(uint(face.w), 1u, light.end - first);
         light.row = first + count;
         if (count >= 3u && arealight_lit_side(light.center + arealight_bridge_vertex(first), face.xyz,
-                                              light.two_sided) != 0.0) {
+                                              light.two_sided, light.error) != 0.0) {
             light.outline = arealight_vertex_outline(light.center, first, count, count == 3u);
             return true;
         }

@@ -4,14 +4,15 @@ use super::{Compiled, Family, Measured};
 use crate::table::Table;
 use std::fmt::Write as _;
 
-const HEADS: [&str; 13] = [
+const HEADS: [&str; 14] = [
     "",
     "ratio",
     "inverse throughput",
     "VGPRs",
     "waves",
     "SGPRs",
-    "spills",
+    "spilled VGPRs",
+    "spilled SGPRs",
     "scratch",
     "instructions",
     "branches",
@@ -30,7 +31,13 @@ impl Compiled {
     /// The tables as Markdown.
     pub fn to_markdown(&self) -> String {
         let family = |family: &Family| {
-            format!("### {}\n\n{}.\n\n{}", family.family, heading(family), table(family).to_markdown())
+            format!(
+                "### {}\n\n{}.\n\n{}\n{}",
+                family.family,
+                heading(family),
+                crowded(family),
+                table(family).to_markdown()
+            )
         };
         self.families.iter().map(family).collect::<Vec<_>>().join("\n")
     }
@@ -47,6 +54,21 @@ fn heading(family: &Family) -> String {
     text
 }
 
+/// Which rows spill, and which leave a SIMD few waves.
+fn crowded(family: &Family) -> String {
+    let list = |what: &str, is_such: &dyn Fn(&Measured) -> bool| {
+        let names: Vec<String> =
+            family.rows.iter().filter(|row| is_such(row)).map(|row| format!("`{}`", row.name())).collect();
+        let (count, all) = (names.len(), family.rows.len());
+        let names = if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) };
+        format!("- {what}, {count} of {all} rows{names}\n")
+    };
+    let most = family.rows.iter().map(|row| row.waves).max().unwrap_or(0);
+    let few = most / 4;
+    list("Registers spill", &|row| row.spilled_vgprs + row.spilled_sgprs > 0)
+        + &list(&format!("At most {few} waves, a quarter of the most"), &|row| row.waves <= few)
+}
+
 fn table(family: &Family) -> Table {
     Table::new(&HEADS, family.rows.iter().map(cells))
 }
@@ -58,7 +80,8 @@ fn cells(row: &Measured) -> Vec<String> {
         row.vgprs,
         row.waves,
         row.sgprs,
-        row.spills,
+        row.spilled_vgprs,
+        row.spilled_sgprs,
         row.scratch,
         row.instructions,
         row.branches,

@@ -14,40 +14,47 @@ const CLIPLESS: &str = "clipless";
 /// The paths of a lobe: the values of DIFFUSE and SPECULAR in `benches/kernels/path_cost.comp`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Path {
-    Below = 0,
-    Above = 1,
-    Crossing1 = 2,
-    Crossing2 = 3,
-    Crossing3 = 4,
+    Tested = 0,
+    Below = 1,
+    Acute = 2,
+    NotAcute = 3,
+    Mixed = 4,
+    Crossing1 = 5,
+    Crossing2 = 6,
+    Crossing3 = 7,
 }
 
-/// Each but the first with the name of its row, by lobe: the other lobe is above, as it mostly is.
-const PATHS: [(Path, [&str; LOBES]); 4] = [
+/// Each but that of a quad above with acute edges with the name of its row, by lobe: the other lobe is that,
+/// as it mostly is.
+const PATHS: [(Path, [&str; LOBES]); 7] = [
+    (Path::Tested, ["diffuse tested", "specular tested"]),
     (Path::Below, ["diffuse below", "specular below"]),
+    (Path::NotAcute, ["diffuse above, not acute", "specular above, not acute"]),
+    (Path::Mixed, ["diffuse above, some acute", "specular above, some acute"]),
     (Path::Crossing1, ["diffuse crossing, 1 above", "specular crossing, 1 above"]),
     (Path::Crossing2, ["diffuse crossing, 2 above", "specular crossing, 2 above"]),
     (Path::Crossing3, ["diffuse crossing, 3 above", "specular crossing, 3 above"]),
 ];
 
-/// Behind a light, or in front of it with both lobes above: the name of the row in a loop, and of that of one
-/// light.
+/// Behind a light, or in front of it with both lobes above and acute: the name of the row in a loop, and of
+/// that of one light.
 const BEHIND: [&str; 2] = ["behind", "behind, one light"];
 const IN_FRONT: [&str; 2] = ["in front", "in front, one light"];
 
 /// The rows that a model is made of.
 pub fn rows() -> Vec<Row> {
     let mut rows = vec![];
-    let above = Path::Above as u32;
+    let acute = Path::Acute as u32;
     for (method, name) in [(0, EXACT), (1, CLIPLESS)] {
         for (in_front, names) in [(0, BEHIND), (1, IN_FRONT)] {
             for (level, loops) in names.into_iter().zip([1, 0]) {
-                rows.push(row(name, level, [method, in_front, above, above, loops]));
+                rows.push(row(name, level, [method, in_front, acute, acute, loops]));
             }
         }
     }
     for (path, names) in PATHS {
-        rows.push(row(EXACT, names[0], [0, 1, path as u32, above, 1]));
-        rows.push(row(EXACT, names[1], [0, 1, above, path as u32, 1]));
+        rows.push(row(EXACT, names[0], [0, 1, path as u32, acute, 1]));
+        rows.push(row(EXACT, names[1], [0, 1, acute, path as u32, 1]));
     }
     rows
 }
@@ -67,11 +74,13 @@ pub struct MethodCosts {
     pub in_front: f64,
 }
 
-/// What a lobe's path adds to a light.
+/// What a lobe's path adds to a light, over the test whether the light is above the horizon.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LobeCosts {
-    /// Wholly above the horizon.
-    pub above: f64,
+    /// Below the horizon.
+    pub below: f64,
+    /// Wholly above it, in all invocations with acute edges, in none, in some.
+    pub above: [f64; 3],
     /// Crossing it with one, two and three vertices above.
     pub crossing: [f64; 3],
 }
@@ -104,22 +113,22 @@ impl Costs {
             let (in_front, pixel) = light(method, IN_FRONT)?;
             Some(MethodCosts { pixel, behind: light(method, BEHIND)?.0, in_front })
         };
-        let all_above = throughput(EXACT, IN_FRONT[0])?;
         let lobe = |lobe: usize| {
             let of = |wanted: Path| {
-                let (_, names) = PATHS.iter().find(|(path, _)| *path == wanted)?;
-                throughput(EXACT, names[lobe])
+                let named = PATHS.iter().find(|(path, _)| *path == wanted);
+                throughput(EXACT, named.map_or(IN_FRONT[0], |(_, names)| names[lobe]))
             };
-            let below = of(Path::Below)?;
-            let added = |path: Path| Some((of(path)? - below) / LOOP);
+            let tested = of(Path::Tested)?;
+            let added = |path: Path| Some((of(path)? - tested) / LOOP);
             Some(LobeCosts {
-                above: (all_above - below) / LOOP,
+                below: added(Path::Below)?,
+                above: [added(Path::Acute)?, added(Path::NotAcute)?, added(Path::Mixed)?],
                 crossing: [added(Path::Crossing1)?, added(Path::Crossing2)?, added(Path::Crossing3)?],
             })
         };
         let lobes = [lobe(0)?, lobe(1)?];
         let mut exact = method(EXACT)?;
-        exact.in_front -= lobes.iter().map(|lobe| lobe.above).sum::<f64>();
+        exact.in_front -= lobes.iter().map(|lobe| lobe.above[0]).sum::<f64>();
         Some(Self { exact, clipless: method(CLIPLESS)?, lobes })
     }
 }

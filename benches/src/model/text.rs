@@ -72,9 +72,15 @@ fn shares(scenes: &[Modelled]) -> Table {
         }),
     ];
     for (lobe, name) in LOBE_NAMES.into_iter().enumerate() {
-        let kinds: [(&str, &dyn Fn(LobePaths) -> bool); 6] = [
+        let of_edges = |paths: LobePaths, edges: LobePaths| {
+            !paths.crosses() && (paths == edges || paths == edges.and(LobePaths::BELOW))
+        };
+        let (acute, not_acute) = (LobePaths::ACUTE, LobePaths::NOT_ACUTE);
+        let kinds: [(&str, &dyn Fn(LobePaths) -> bool); 8] = [
             ("below alone", &|paths| paths == LobePaths::BELOW),
-            ("above alone, or with below", &|paths| paths.is_above() && !paths.crosses()),
+            ("above alone, or with below: acute", &|paths| of_edges(paths, acute)),
+            ("not acute", &|paths| of_edges(paths, not_acute)),
+            ("some acute", &|paths| of_edges(paths, acute.and(not_acute))),
             ("above and crossing", &|paths| paths.is_above() && paths.crosses()),
             ("crossing alone, at most 1 above", &|paths| !paths.is_above() && paths.most_above() == Some(1)),
             ("at most 2", &|paths| !paths.is_above() && paths.most_above() == Some(2)),
@@ -97,12 +103,22 @@ fn paths(costs: &Costs) -> Table {
     let mut rows = vec![
         both("a pixel without lights", ours.pixel, clipless.pixel),
         both("a light, behind", ours.behind, clipless.behind),
-        both("in front; of ours the transforms and tests alone", ours.in_front, clipless.in_front),
+        both("in front; of ours the transforms and first test alone", ours.in_front, clipless.in_front),
     ];
+    let all_acute = ours.in_front + costs.lobes.iter().map(|lobe| lobe.above[0]).sum::<f64>();
+    rows.push(both("both lobes above and acute", all_acute, clipless.in_front));
     for (name, lobe) in LOBE_NAMES.into_iter().zip(&costs.lobes) {
+        let [acute, not_acute, mixed] = lobe.above;
         let [one, two, three] = lobe.crossing;
-        let more =
-            [("above", lobe.above), ("crossing with 1 above", one), ("with 2", two), ("with 3", three)];
+        let more = [
+            ("below", lobe.below),
+            ("above, acute", acute),
+            ("not acute", not_acute),
+            ("some acute", mixed),
+            ("crossing with 1 above", one),
+            ("with 2", two),
+            ("with 3", three),
+        ];
         for (path, cost) in more {
             rows.push(vec![format!("+ {name}: {path}"), format!("{cost:.0}"), String::new()]);
         }

@@ -33,6 +33,10 @@ const float AREALIGHT_HORIZON_WIDTH = 1e-7;
 // can make of zero.
 const float AREALIGHT_PLANE_WIDTH = 3e-7;
 
+// How far a position may be from where it was meant to be, as a part of the sum of its coordinates' sizes:
+// eight units of float32's last place, what rounding makes of a ray's hit or of a depth buffer's depth.
+const float AREALIGHT_POSITION_WIDTH = 1e-6;
+
 // The largest absolute component of v.
 float arealight_max_component(vec3 v) {
     vec3 a = abs(v);
@@ -78,6 +82,11 @@ float arealight_luminance(vec3 color) {
     return dot(color, vec3(0.2126, 0.7152, 0.0722));
 }
 
+// The error of a shading point's position, which is relative to an origin near the camera.
+float arealight_position_error(vec3 position) {
+    return AREALIGHT_POSITION_WIDTH * dot(abs(position), vec3(1.0));
+}
+
 // The side of a light that a shading point is on, if it lights it: 1 before the front, -1 behind a two-sided
 // light, else 0. A point in the light's plane is on neither side, so that a light in the plane of a surface
 // does not light it by the last bit. `offset` goes from the point to the light's center; `normal` is that of
@@ -86,9 +95,13 @@ float arealight_luminance(vec3 color) {
 // What rounding makes of a height is in proportion to the coordinates that it is made of. Along those to
 // which the normal is perpendicular nothing is added, and nothing rounded: a level ceiling has a side at any
 // height, however large it is.
-float arealight_lit_side(vec3 offset, vec3 normal, bool two_sided) {
+//
+// A two-sided light does not light itself: its own points are in its plane but for the error of their
+// positions, `error` (arealight_position_error), and one put behind the plane would see nothing else.
+float arealight_lit_side(vec3 offset, vec3 normal, bool two_sided, float error) {
     float height = -dot(offset, normal);
-    float width = AREALIGHT_PLANE_WIDTH * dot(abs(offset), clamp(1e9 * abs(normal), 0.0, 1.0));
+    float width = AREALIGHT_PLANE_WIDTH * dot(abs(offset), clamp(1e9 * abs(normal), 0.0, 1.0))
+                + (two_sided ? error : 0.0);
     return height > width ? 1.0 : two_sided && -height > width ? -1.0 : 0.0;
 }
 

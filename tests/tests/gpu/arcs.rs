@@ -123,8 +123,8 @@ fn the_weight_of_an_arc_has_the_error_that_it_states() {
 fn the_weight_of_an_acute_arc_has_the_error_that_it_states() {
     let variables = |theta: f64| vec![("s", 1.0), ("x", theta.cos())];
     assert_error(
-        (ARC_GLSL, "arealight_horizon_arc", "float acute = "),
-        7e-8,
+        (ARC_GLSL, "arealight_acute_weight", "return "),
+        5.6e-7,
         std::f64::consts::FRAC_PI_2,
         variables,
         ratio,

@@ -1,14 +1,18 @@
 //! Lights far larger than their distance, and lights in the plane of the point: which side of its plane a
 //! point is on is told by the plane in the world, not by vertices, whose heights drown in their lengths.
 
-use arealight::{FormFactor, Horizon, Light, LightShape, Quality};
-use arealight_engine::EvalPoint;
+use arealight::{Effects, FormFactor, Horizon, Light, LightShape, LightTexture, Quality};
+use arealight_benches::pictures;
+use arealight_engine::{EvalPoint, Reference, SceneRenderer};
 use arealight_oracle::material::Surface;
 use arealight_oracle::stream::Stream;
-use arealight_tests::Comparison;
-use arealight_tests::TestEngine;
+use arealight_oracle::texture::Texture;
+use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_tests::materials::polygon_twin;
+use arealight_tests::scenes::{lambert, scene_of, without_textures};
+use arealight_tests::{Comparison, TestEngine};
 use glam::{DVec2, DVec3, Vec3};
+use std::sync::Arc;
 
 const CASES: u64 = 120;
 
@@ -202,4 +206,68 @@ fn a_light_in_the_plane_of_its_point_sends_nothing() {
     let before: Vec<_> = before.collect();
     let answers = engine.eval(&before, Quality::default()).unwrap();
     assert!(answers.iter().filter(|answer| answer.x > 0.1).count() > before.len() / 4, "the twin");
+}
+
+/// A sheet of light of each kind in the plane of two axes, seen from both sides.
+fn sheets(u: DVec3, v: DVec3) -> Vec<Light> {
+    let outline =
+        |corners: &[[f64; 2]]| -> Vec<DVec3> { corners.iter().map(|[x, y]| u * *x + v * *y).collect() };
+    let square = outline(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]);
+    let mut mesh = Light::default().shape;
+    mesh.add_face(&outline(&[[-1.0, -1.0], [0.0, -1.0], [0.0, 1.0], [-1.0, 1.0]]));
+    mesh.add_face(&outline(&[[0.0, -1.0], [1.0, -1.0], [1.0, 1.0], [0.0, 1.0]]));
+    let notched = outline(&[[-1.0, -1.0], [0.0, -0.5], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]);
+    let disk = LightShape::Disk { center: DVec3::ZERO, axis_u: u, axis_v: v };
+    let shapes = [LightShape::Polygon(square.clone()), LightShape::Polygon(notched), mesh, disk];
+    let light = |shape| Light { radiance: Vec3::ONE, two_sided: true, shape, ..Light::default() };
+    let uvs = vec![DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+    let textured =
+        Light { texture: Some(LightTexture { layer: 0, uvs }), ..light(LightShape::Polygon(square)) };
+    shapes.into_iter().map(light).chain([textured]).collect()
+}
+
+/// How many pixels of a scene a light lights, by the shade pass and by the reference.
+fn lit_pixels(engine: &TestEngine, scene: &Scene, camera: &Camera, light: &Light) -> [usize; 2] {
+    const SIZE: [u32; 2] = [48, 32];
+    let buffers = SceneBuffers::new(scene, camera.position).expect("buffers");
+    let constants = buffers.constants(camera, SIZE, Vec3::ZERO);
+    let lights = std::slice::from_ref(light);
+    [false, true].map(|sampled| {
+        let mut renderer = SceneRenderer::new(engine, &buffers, lights, constants, SIZE).expect("a renderer");
+        if sampled {
+            let reference = Reference { samples: 2, coupled: false, ..Reference::default() };
+            renderer.reference(reference, |_| {}).expect("a reference");
+        } else {
+            renderer.shade(Effects::DIFFUSE, Quality::default()).expect("a frame");
+        }
+        let texels = renderer.radiance().expect("a picture");
+        texels.iter().filter(|texel| texel.truncate() != Vec3::ZERO).count()
+    })
+}
+
+#[test]
+fn a_two_sided_light_does_not_light_itself() {
+    let Some(mut engine) = TestEngine::new() else { return };
+    pictures::load(&mut engine, &[Arc::new(Texture::gradient(8, 8))]).expect("a picture");
+    let normal = DVec3::new(0.3, -0.5, 0.8).normalize_or_zero();
+    let (u, v) = normal.any_orthonormal_pair();
+    // What the camera sees is the light's own sheet; the twin: that is a ten thousandth of its size behind
+    let scene = |behind: f64| {
+        let [a, b, c, d] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[x, y]| u * x + v * y + behind * normal);
+        scene_of(&[[a, b, c], [a, c, d]], without_textures(lambert(0.8)))
+    };
+    let own = scene(0.0);
+    let framing = own.framing_camera(1.5);
+    let twin = scene(1e-4 * framing.forward.dot(normal).signum());
+    for (light, distance) in
+        sheets(u, v).iter().flat_map(|light| [3.5, 10.0, 40.0].map(|distance| (light, distance)))
+    {
+        let position = -distance * framing.forward;
+        let camera = Camera { position, half_height: 1.0 / distance, ..framing.clone() };
+        let [shaded, sampled] = lit_pixels(&engine, &own, &camera, light);
+        assert_eq!([shaded, sampled], [0, 0], "from {distance}: {light:?}");
+        let [shaded, sampled] = lit_pixels(&engine, &twin, &camera, light);
+        assert!(shaded > 300 && sampled > 300, "from {distance}: {shaded}, {sampled}: {light:?}");
+    }
 }

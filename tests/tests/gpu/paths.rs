@@ -52,7 +52,8 @@ fn paths_are_those_of_the_lights() {
     let small = 0.1;
     let wall = DVec3::new(0.0, 0.0, -HALF - 1.0);
     let cases = [
-        ("above", light(3.0 * y, x * small, z * small), LobePaths::ABOVE),
+        ("above", light(3.0 * y, x * small, z * small), LobePaths::ACUTE),
+        ("above, long", light(3.0 * y, x * 10.0, z * 40.0), LobePaths::NOT_ACUTE),
         ("below", light(-3.0 * y, z * small, x * small), LobePaths::BELOW),
         ("through the floor", light(wall, x, y), LobePaths::CROSSING[1]),
         // A rhombus, of which a corner is above or below

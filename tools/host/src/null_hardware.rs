@@ -80,8 +80,10 @@ pub struct Statistics {
     pub vgprs: u64,
     /// Scalar registers a wave.
     pub sgprs: u64,
-    /// Registers of both kinds that did not fit and went to memory.
-    pub spills: u64,
+    /// Vector registers that did not fit and went to memory.
+    pub spilled_vgprs: u64,
+    /// Scalar registers that did not fit and went to lanes of vector registers.
+    pub spilled_sgprs: u64,
     /// Memory of its own a wave, in bytes: spills, and arrays that are indexed dynamically.
     pub scratch: u64,
     /// How many waves a SIMD holds at a time.
@@ -195,7 +197,8 @@ impl Compiler {
             subgroup_size,
             vgprs: number("VGPRs")?,
             sgprs: number("SGPRs")?,
-            spills: number("Spilled VGPRs")? + number("Spilled SGPRs")?,
+            spilled_vgprs: number("Spilled VGPRs")?,
+            spilled_sgprs: number("Spilled SGPRs")?,
             scratch: number("Scratch size")?,
             waves: number("Subgroups per SIMD")?,
             instructions: number("Instructions")?,

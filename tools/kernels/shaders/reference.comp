@@ -391,12 +391,12 @@ vec3 light_radiance(ArealightPolygonLight light, vec3 point) {
 }
 
 // The light's density in solid angle at a point of it, `offset` from the surface: distance^2 / (area
-// |cosine|); 0 where it does not emit towards the surface.
-float light_density(ArealightPolygonLight light, float area, vec3 normal, vec3 offset) {
+// |cosine|); 0 where it does not emit towards the surface at `position`.
+float light_density(ArealightPolygonLight light, float area, vec3 normal, vec3 offset, vec3 position) {
     float square = dot(offset, offset);
     float cosine = -dot(normal, offset) * inversesqrt(max(square, AREALIGHT_TINY));
-    bool emits = light.two_sided ? cosine != 0.0 : cosine > 0.0;
-    return emits ? square / (area * abs(cosine)) : 0.0;
+    float side = arealight_lit_side(offset, normal, light.two_sided, arealight_position_error(position));
+    return side != 0.0 ? square / (area * abs(cosine)) : 0.0;
 }
 
 // One sample of one light: a point of it, weighed against the BRDF's density.
@@ -404,7 +404,7 @@ vec3 estimate_by_light(Lobes lobes, ArealightPolygonLight light, ArealightGpuLig
                        inout RandomState random) {
     LightPoint point = sample_point(sampling, random);
     vec3 offset = point.offset + (light.center - lobes.position);
-    float by_light = light_density(light, sampling.area, point.normal, offset);
+    float by_light = light_density(light, sampling.area, point.normal, offset, lobes.position);
     vec3 direction = lobes.to_surface * arealight_normalize_or(offset, vec3(0.0));
     float by_brdf = density(lobes, direction);
     if (by_light <= 0.0 || by_brdf <= 0.0 || !arrives(lobes, offset)) {
@@ -425,7 +425,7 @@ vec3 estimate_by_brdf(Lobes lobes, vec3 direction, float by_brdf, ArealightPolyg
         return vec3(0.0);
     }
     vec3 offset = ray * distance;
-    float by_light = light_density(light, sampling.area, sampling.normal, offset);
+    float by_light = light_density(light, sampling.area, sampling.normal, offset, lobes.position);
     if (by_light <= 0.0 || !inside_outline(light, sampling.normal, offset - center) || !arrives(lobes,
                                                                                                 offset)) {
         return vec3(0.0);
@@ -451,7 +451,7 @@ vec3 estimate_mesh_by_brdf(Lobes lobes, vec3 direction, float by_brdf, Arealight
         vec3 normal = triangle_normal(sampling, a, b, c);
         float distance = dot(normal, a) / dot(normal, ray);
         if (inside && distance > 0.0 && distance < 1e30) {
-            float by_light = light_density(light, sampling.area, normal, ray * distance);
+            float by_light = light_density(light, sampling.area, normal, ray * distance, lobes.position);
             sum += by_light > 0.0 && arrives(lobes, ray * distance) ? 1.0 / (by_light + by_brdf) : 0.0;
         }
     }

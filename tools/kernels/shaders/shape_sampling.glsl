@@ -17,11 +17,11 @@ struct ShapeSample {
     float density; // in solid angle; 0 where it does not shine towards the shading point, or is none
 };
 
-// The density in solid angle of a point that was drawn by area.
-float area_density(vec3 offset, vec3 normal, float area, bool two_sided) {
+// The density in solid angle of a point that was drawn by area; `error` as in arealight_lit_side.
+float area_density(vec3 offset, vec3 normal, float area, bool two_sided, float error) {
     float square = dot(offset, offset);
     float cosine = -dot(normal, offset) * inversesqrt(max(square, AREALIGHT_TINY));
-    bool shines = two_sided ? cosine != 0.0 : cosine > 0.0;
+    bool shines = arealight_lit_side(offset, normal, two_sided, error) != 0.0;
     return shines ? square / (area * abs(cosine)) : 0.0;
 }
 
@@ -57,6 +57,12 @@ float ellipse_area(ArealightGpuShape shape) {
     return AREALIGHT_PI * length(cross(shape.axis_u, shape.axis_v));
 }
 
+// The density at `offset` of an ellipse around `center`, both from the shading point.
+float ellipse_density(ArealightGpuShape shape, vec3 center, vec3 offset, vec3 normal) {
+    float error = arealight_position_error(shape.center - center);
+    return area_density(offset, normal, ellipse_area(shape), is_two_sided(shape), error);
+}
+
 // Areas of a tube's mantle and of both its ends.
 vec2 tube_areas(ArealightGpuShape shape) {
     float round = AREALIGHT_PI * shape.radius;
@@ -70,7 +76,7 @@ ShapeSample sample_ellipse(ArealightGpuShape shape, vec3 center, inout RandomSta
     float angle = 2.0 * AREALIGHT_PI * random_float(random);
     vec3 offset = center + radius * (cos(angle) * shape.axis_u + sin(angle) * shape.axis_v);
     vec3 normal = arealight_normalize_or(cross(shape.axis_u, shape.axis_v), vec3(0.0));
-    return ShapeSample(offset, area_density(offset, normal, ellipse_area(shape), is_two_sided(shape)));
+    return ShapeSample(offset, ellipse_density(shape, center, offset, normal));
 }
 
 ShapeSample sample_sphere(ArealightGpuShape shape, vec3 center, inout RandomState random) {
@@ -112,7 +118,7 @@ ShapeSample sample_tube(ArealightGpuShape shape, vec3 center, inout RandomState 
         normal = side * axis;
         offset = center + side * shape.axis_u + shape.radius * sqrt(u) * radial;
     }
-    return ShapeSample(offset, area_density(offset, normal, areas.x + areas.y, false));
+    return ShapeSample(offset, area_density(offset, normal, areas.x + areas.y, false, 0.0));
 }
 
 // A point of a shape before the shading point.
@@ -145,7 +151,7 @@ ShapeSample meet_ellipse(ArealightGpuShape shape, vec3 center, vec3 ray) {
     float vv = dot(shape.axis_v, shape.axis_v);
     vec2 along = vec2(dot(point, shape.axis_u), dot(point, shape.axis_v));
     vec2 place = vec2(along.x * vv - along.y * uv, along.y * uu - along.x * uv) / (uu * vv - uv * uv);
-    float density = area_density(ray * distance, normal, ellipse_area(shape), is_two_sided(shape));
+    float density = ellipse_density(shape, center, ray * distance, normal);
     return ShapeSample(ray * distance, dot(place, place) <= 1.0 ? density : 0.0);
 }
 
@@ -160,7 +166,7 @@ ShapeSample meet_sphere(ArealightGpuShape shape, vec3 center, vec3 ray) {
 // The point at `distance`, from where the tube's outside is seen: as it is convex, a ray enters it once.
 ShapeSample tube_point(ArealightGpuShape shape, vec3 ray, float distance, vec3 normal) {
     vec2 areas = tube_areas(shape);
-    float density = area_density(ray * distance, normal, areas.x + areas.y, false);
+    float density = area_density(ray * distance, normal, areas.x + areas.y, false, 0.0);
     return ShapeSample(ray * distance, distance > 0.0 ? density : 0.0);
 }
 

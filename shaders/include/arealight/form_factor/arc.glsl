@@ -42,12 +42,18 @@ vec3 arealight_arc(vec3 a, vec3 b) {
          / (y + y * y * (0.66850024 + y * 0.096849829));
 }
 
+// The angle of the cosine x over its sine, for x in [0, 1]: acos(x) / sqrt(1 - x^2), with a relative error of
+// 5.6e-7. Source: minimax rational function, by the exchange algorithm.
+float arealight_acute_weight(float x) {
+    return (1.57079545 + x * (0.905811694 + x * 0.0260320425))
+         / (1.0 + x * (1.21323771 + x * 0.289400083));
+}
+
 // What rounding makes of the sine of a half turn: that of vectors that both moved by 2 x 2^-24.
 const float AREALIGHT_HALF_TURN = 2.4e-7;
 
 // The arc along the horizon from a to b, unit vectors on it: z is the angle, in [-pi, pi]. An obtuse angle is
-// pi less the acute one, for which the weight is within 7e-8 of G: here rounding of y would turn the arc, not
-// move its end.
+// pi less the acute one: here rounding of y would turn the arc, not move its end.
 //
 // It closes the sum of an outline's other arcs. `front`: 1 where the outline is known to be seen from its
 // front, -1 from its back: an obtuse arc then runs the way that closes such an outline, whatever rounding has
@@ -59,9 +65,7 @@ const float AREALIGHT_HALF_TURN = 2.4e-7;
 vec3 arealight_horizon_arc(vec2 a, vec2 b, float half_turn, float front) {
     float cosine = dot(a, b);
     float s = a.x * b.y - a.y * b.x;
-    float x = abs(cosine);
-    float acute = s * (1.5707963 + x * (1.1001613 + x * (0.056827213 - x * 0.0033851264)))
-                / (1.0 + x * (1.3370004 + x * 0.38739931));
+    float acute = s * arealight_acute_weight(abs(cosine));
     float side = front != 0.0 ? -front : abs(s) > AREALIGHT_HALF_TURN ? s : half_turn;
     return vec3(0.0, 0.0, cosine < 0.0 ? (side < 0.0 ? -AREALIGHT_PI : AREALIGHT_PI) - acute : acute);
 }

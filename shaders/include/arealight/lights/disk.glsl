@@ -45,7 +45,8 @@ bool arealight_to_local(ArealightPoint point, ArealightDiskLight light, out Area
 #if AREALIGHT_LIGHT_TEXTURES
     local.image = light.image;
 #endif
-    return arealight_lit_side(offset, normal, AREALIGHT_HAS_TWO_SIDED && light.two_sided) != 0.0;
+    return arealight_lit_side(offset, normal, AREALIGHT_HAS_TWO_SIDED && light.two_sided,
+                              arealight_position_error(point.position)) != 0.0;
 }
 
 // z alone: what it is where the point is on a bright side.

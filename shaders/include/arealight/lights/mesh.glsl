@@ -23,6 +23,7 @@ struct ArealightLocalMesh {
     uint first;    // rows
     uint end;
     bool two_sided;
+    float error;   // arealight_position_error
 };
 
 bool arealight_to_local(ArealightPoint point, ArealightMeshLight light, out ArealightLocalMesh local) {
@@ -31,6 +32,7 @@ bool arealight_to_local(ArealightPoint point, ArealightMeshLight light, out Area
     local.first = light.first_row;
     local.end = light.first_row + light.row_count;
     local.two_sided = AREALIGHT_HAS_TWO_SIDED && light.two_sided;
+    local.error = arealight_position_error(point.position);
     return true;
 }
 
@@ -48,7 +50,8 @@ ArealightMeshFace arealight_mesh_face(ArealightLocalMesh local, uint row) {
     uint first = row + 1u;
     uint end = first + clamp(uint(face.w), 1u, local.end - first);
     vec3 offset = local.offset + arealight_bridge_vertex(first);
-    return ArealightMeshFace(first, end, arealight_lit_side(offset, face.xyz, local.two_sided));
+    float side = arealight_lit_side(offset, face.xyz, local.two_sided, local.error);
+    return ArealightMeshFace(first, end, side);
 }
 
 // Each face is clipped and closed by itself, if the point is on its bright side.

@@ -45,7 +45,8 @@ bool arealight_to_local(ArealightPoint point, ArealightPolygonLight light, out A
     local.to_frame = point.to_frame;
     local.first = light.first_vertex;
     local.end = light.first_vertex + light.vertex_count;
-    local.side = arealight_lit_side(offset, light.normal, AREALIGHT_HAS_TWO_SIDED && light.two_sided);
+    local.side = arealight_lit_side(offset, light.normal, AREALIGHT_HAS_TWO_SIDED && light.two_sided,
+                                    arealight_position_error(point.position));
 #if AREALIGHT_LIGHT_TEXTURES
     local.image = light.image;
     local.normal = light.normal;

@@ -70,7 +70,8 @@ bool arealight_cut_local(inout ArealightLocalQuad local, mat3 to_frame, Arealigh
 
 bool arealight_to_local(ArealightPoint point, ArealightQuadLight light, out ArealightLocalQuad local) {
     vec3 offset = light.center - point.position;
-    local.side = arealight_lit_side(offset, light.normal, AREALIGHT_HAS_TWO_SIDED && light.two_sided);
+    local.side = arealight_lit_side(offset, light.normal, AREALIGHT_HAS_TWO_SIDED && light.two_sided,
+                                    arealight_position_error(point.position));
     bool lit = local.side != 0.0 && arealight_is_finite(light.quad);
     if (lit) {
         local.center = point.to_frame * offset;

@@ -30,13 +30,13 @@ const float AREALIGHT_DIELECTRIC_F0 = 0.02;
 // The bilinear mean of four texels around `coordinate`, which is in nodes: 0 to size - 1.
 vec4 arealight_table_bilinear(int layer, vec2 coordinate, int size) {
     vec2 node = clamp(floor(coordinate), vec2(0.0), vec2(float(size - 2)));
-    vec2 weight = coordinate - node;
     ivec2 texel = ivec2(node);
-    vec4 low = mix(arealight_bridge_table(layer, texel), arealight_bridge_table(layer, texel + ivec2(1, 0)),
-                   weight.x);
-    vec4 high = mix(arealight_bridge_table(layer, texel + ivec2(0, 1)),
-                    arealight_bridge_table(layer, texel + ivec2(1, 1)), weight.x);
-    return mix(low, high, weight.y);
+    vec2 far = coordinate - node;
+    vec2 near = 1.0 - far;
+    return near.x * near.y * arealight_bridge_table(layer, texel)
+         + far.x * near.y * arealight_bridge_table(layer, texel + ivec2(1, 0))
+         + near.x * far.y * arealight_bridge_table(layer, texel + ivec2(0, 1))
+         + far.x * far.y * arealight_bridge_table(layer, texel + ivec2(1, 1));
 }
 
 // What fills the dips of GGX's two albedos (albedo, schlick) at grazing views, so that a table can

@@ -43,9 +43,9 @@ fn no_row_takes_more_than_the_file_says() {
     if radv_or_skip().is_none() {
         return;
     }
-    // AREALIGHT_LONG=1: every family of the file, which takes as long again
+    // AREALIGHT_LONG=1: every family of the file, which takes three times as long
     let all = std::env::var("AREALIGHT_LONG").is_ok_and(|value| value == "1");
-    let families = if all { "navi21,vega10" } else { "navi21" };
+    let families = if all { "navi21,vega10,gfx1100" } else { "navi21" };
     let output = compile(&["--family", families, "--check", &checked_in().display().to_string()]);
     if !is_compared(&output) {
         return;
@@ -97,7 +97,7 @@ fn a_file_of_less_fails() {
     // More than what is found: better, and it says how to keep that
     let output = doctored(&less("vgprs", 2.0));
     assert!(output.status.success() && said(&output).contains("better: VGPRs"), "{}", said(&output));
-    assert!(said(&output).contains("arealight bench compiled --family navi21,vega10 --update"));
+    assert!(said(&output).contains("arealight bench compiled --family navi21,vega10,gfx1100 --update"));
 
     // A row that is not there
     let output = doctored(&|row| row["kernel"] != "texture_load");

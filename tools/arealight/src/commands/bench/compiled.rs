@@ -17,7 +17,8 @@ use std::process::ExitCode;
 const FILE: &str = "benches/data/compiled.json";
 
 /// What brings everything that is checked in up to date.
-const UPDATE: &str = "arealight bench compiled --family navi21,vega10 --update --markdown docs/data/gpu.md";
+const UPDATE: &str =
+    "arealight bench compiled --family navi21,vega10,gfx1100 --update --markdown docs/data/gpu.md";
 
 /// Ask a GPU's compiler what it makes of the kernels: registers, waves, instructions, estimated cycles.
 ///
