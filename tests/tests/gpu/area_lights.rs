@@ -99,7 +99,7 @@ fn what_blocks_darkens_and_what_does_not_changes_nothing() {
         let unshadowed = floor.shade(options, false, (&floor.resources(), &view, Descriptors::Sets));
         let info = AreaLightsInfo {
             options: ShadeOptions { shadow_rays: 2, ..options },
-            shadow_filter: ShadowFilter::Off,
+            shadow_filter: ShadowFilter::Gather,
             ..AreaLightsInfo::default()
         };
         with_area_lights(&engine, &info, |area_lights| {

@@ -13,9 +13,11 @@ pub enum Shadows {
     Rays(u32, ShadowFilter),
 }
 
-impl Default for Shadows {
-    fn default() -> Self {
-        Self::Rays(ShadeOptions::MOST_SHADOW_RAYS, ShadowFilter::Gather)
+impl Shadows {
+    /// The default of a picture with so many samples a pixel: four rays a pixel in all, one a sample at least,
+    /// filtered.
+    pub fn for_samples(samples: u32) -> Self {
+        Self::Rays((ShadeOptions::MOST_SHADOW_RAYS / samples.max(1)).max(1), ShadowFilter::Gather)
     }
 }
 
@@ -54,9 +56,11 @@ mod tests {
 
     #[test]
     fn levels_read_as_they_are_written() {
-        for level in [Shadows::Off, Shadows::Rays(2, ShadowFilter::Off), Shadows::default()] {
+        for level in [Shadows::Off, Shadows::Rays(2, ShadowFilter::Off), Shadows::for_samples(1)] {
             assert_eq!(level.to_string().parse(), Ok(level));
         }
+        let levels = [1, 2, 4, 64].map(|samples| Shadows::for_samples(samples).to_string());
+        assert_eq!(levels, ["filtered:4", "filtered:2", "filtered:1", "filtered:1"]);
         for wrong in ["", "on", "rays", "rays:0", "filtered:5", "rays:-1", "soft:2"] {
             assert!(wrong.parse::<Shadows>().is_err(), "{wrong}");
         }

@@ -61,7 +61,8 @@ pub struct Arguments {
         default_missing_value = "0", value_parser = parse_part, conflicts_with = "reference")]
     tiles: Option<f32>,
     /// Shadows: off; or by N rays a pixel, from 1 to 4, as they are (rays:N) or filtered over the penumbra
-    /// (filtered:N). With --reference they are exact, or off [default: filtered:4; off with --tiles]
+    /// (filtered:N), of each sample of a pixel. With --reference they are exact, or off [default: filtered, by
+    /// four rays a pixel or one a sample; off with --tiles]
     #[arg(long, value_name = "LEVEL", conflicts_with = "tiles")]
     shadows: Option<Shadows>,
     #[command(flatten)]
@@ -83,6 +84,10 @@ impl Arguments {
     /// The reference samples that a pixel really has.
     fn reference_samples(&self) -> Option<u32> {
         self.reference.map(|samples| self.samples_a_subpixel(samples) * self.supersample * self.supersample)
+    }
+
+    fn shadow_level(&self) -> Shadows {
+        self.shadows.unwrap_or_else(|| Shadows::for_samples(self.supersample * self.supersample))
     }
 
     fn scene_name(&self) -> PathBuf {

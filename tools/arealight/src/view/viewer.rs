@@ -286,7 +286,7 @@ impl<'a> Viewer<'a> {
     }
 
     fn shade_with_shadows(&mut self, level: Level) -> Result<Option<Duration>, EngineError> {
-        let Shadows::Rays(shadow_rays, filter) = Shadows::default() else { return self.shade(level) };
+        let Shadows::Rays(shadow_rays, filter) = Shadows::for_samples(1) else { return self.shade(level) };
         if self.shadowed.as_ref().is_none_or(|(of, _)| *of != level) {
             let options = ShadeOptions { quality: level.quality(), shadow_rays, ..ShadeOptions::default() };
             let view = |surfaces| {

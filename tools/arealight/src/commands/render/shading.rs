@@ -121,7 +121,7 @@ fn shade(
     let View { surfaces, quality, index, light_count } = *view;
     let took = match (arguments.reference, arguments.tiles) {
         (None, None) => {
-            let shadows = arguments.shadows.unwrap_or_default();
+            let shadows = arguments.shadow_level();
             shade_with_shadows(renderer, scene, (surfaces, quality), (shadows, index))?
         }
         (None, Some(cull_threshold)) => {
@@ -140,7 +140,7 @@ fn shade(
         }
         (Some(samples), _) => {
             let samples = arguments.samples_a_subpixel(samples);
-            let shadows = arguments.shadows.unwrap_or_default() != Shadows::Off;
+            let shadows = arguments.shadow_level() != Shadows::Off;
             let coupled = surfaces.contains(Effects::COUPLED);
             let reference = Reference { samples, shadows, coupled, seed: index };
             let before = bar.position();
