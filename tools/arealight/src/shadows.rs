@@ -14,8 +14,8 @@ pub enum Shadows {
 }
 
 impl Shadows {
-    /// The default of a picture with so many samples a pixel: four rays a pixel in all, one a sample at least,
-    /// filtered.
+    /// The default of a picture with so many samples a pixel: four rays a pixel in all, one a sample at
+    /// least, filtered.
     pub fn for_samples(samples: u32) -> Self {
         Self::Rays((ShadeOptions::MOST_SHADOW_RAYS / samples.max(1)).max(1), ShadowFilter::Gather)
     }

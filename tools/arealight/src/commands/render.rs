@@ -60,9 +60,9 @@ pub struct Arguments {
     #[arg(long, value_name = "FRACTION", num_args = 0..=1, require_equals = true,
         default_missing_value = "0", value_parser = parse_part, conflicts_with = "reference")]
     tiles: Option<f32>,
-    /// Shadows: off; or by N rays a pixel, from 1 to 4, as they are (rays:N) or filtered over the penumbra
-    /// (filtered:N), of each sample of a pixel. With --reference they are exact, or off [default: filtered, by
-    /// four rays a pixel or one a sample; off with --tiles]
+    /// Shadows: off; or by N rays a sample, from 1 to 4, as they are (rays:N) or filtered over the penumbra
+    /// (filtered:N). With --reference they are exact, or off [default: filtered, by four rays a pixel or one
+    /// a sample; off with --tiles]
     #[arg(long, value_name = "LEVEL", conflicts_with = "tiles")]
     shadows: Option<Shadows>,
     #[command(flatten)]
