@@ -31,12 +31,12 @@ const float AREALIGHT_DIELECTRIC_F0 = 0.02;
 vec4 arealight_table_bilinear(int layer, vec2 coordinate, int size) {
     vec2 node = clamp(floor(coordinate), vec2(0.0), vec2(float(size - 2)));
     ivec2 texel = ivec2(node);
-    vec2 far = coordinate - node;
-    vec2 near = 1.0 - far;
-    return near.x * near.y * arealight_bridge_table(layer, texel)
-         + far.x * near.y * arealight_bridge_table(layer, texel + ivec2(1, 0))
-         + near.x * far.y * arealight_bridge_table(layer, texel + ivec2(0, 1))
-         + far.x * far.y * arealight_bridge_table(layer, texel + ivec2(1, 1));
+    vec2 upper = coordinate - node;
+    vec2 lower = 1.0 - upper;
+    return lower.x * lower.y * arealight_bridge_table(layer, texel)
+         + upper.x * lower.y * arealight_bridge_table(layer, texel + ivec2(1, 0))
+         + lower.x * upper.y * arealight_bridge_table(layer, texel + ivec2(0, 1))
+         + upper.x * upper.y * arealight_bridge_table(layer, texel + ivec2(1, 1));
 }
 
 // What fills the dips of GGX's two albedos (albedo, schlick) at grazing views, so that a table can
