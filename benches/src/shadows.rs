@@ -5,15 +5,13 @@
 //! in W/(m² sr).
 
 use crate::ladder::Errors;
+use arealight_oracle::material::LUMINANCE;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// Shadows closer than this to 0 or to 1 are no penumbra: there the noise of a reference of a thousand
 /// samples is as large.
 const EDGE: f64 = 0.02;
-
-/// Luminance of linear Rec. 709 colour.
-const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
 
 /// Pictures of different sizes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

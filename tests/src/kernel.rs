@@ -118,7 +118,7 @@ pub fn shade_with_visibility() -> Vec<u32> {
     with_bridge("shade", "AREALIGHT_HOST_VISIBILITY")
 }
 
-/// The kernel of shadow rays with the example's blocker, or with what is there of ours, likewise.
+/// The kernel of shadow rays with the example's blocker, or with our walk, which asks what masks cut out.
 ///
 /// # Panics
 /// As [`shade_with_bridge`].

@@ -3,6 +3,9 @@
 use crate::thin_film::ThinFilm;
 use glam::{DVec3, Vec3};
 
+/// The parts of linear Rec. 709 channels in luminance.
+pub const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
+
 /// A metallic-roughness material with constant values, as glTF has it (with `KHR_materials_ior`,
 /// `KHR_materials_specular`, `KHR_materials_clearcoat`, `KHR_materials_sheen` and
 /// `KHR_materials_iridescence`). Textures belong to the scene that samples them.
@@ -254,7 +257,7 @@ impl Material {
         let dielectric = 1.0 - f64::from(self.metalness);
         let pane = self.base_color.as_dvec3() * (dielectric * f64::from(self.glass));
         let diffused = dielectric * f64::from(self.transmission) * (1.0 - f64::from(self.glass));
-        let luminance = pane.dot(DVec3::new(0.2126, 0.7152, 0.0722));
+        let luminance = pane.dot(LUMINANCE);
         let Surface { interface, alpha, .. } = self.coupled_surface();
         Surface {
             diffuse_albedo: self.transmission_color.as_dvec3() * diffused,

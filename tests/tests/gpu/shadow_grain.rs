@@ -81,7 +81,7 @@ fn no_frequency_stands_out_of_random_numbers() {
         println!("{surface}: {:.2} of {:.2}", peak.sqrt(), chance.sqrt());
         assert!(peak < chance, "{surface}: {peak} of {chance}");
     }
-    // The twin: two lattices of these coefficients, of which one picks the light, and one the direction
+    // The twin: two lattices of these coefficients: one picks the light, the other the direction
     let fraction = |x: usize, y: usize, by: [u32; 2]| {
         let bits = by[0].wrapping_mul(x as u32).wrapping_add(by[1].wrapping_mul(y as u32));
         f64::from(bits) / f64::from(u32::MAX)

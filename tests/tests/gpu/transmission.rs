@@ -18,8 +18,8 @@ const SIZE: [u32; 2] = [96, 54];
 const THROUGH: Effects =
     Effects::DIFFUSE.union(Effects::GLOSSY).union(Effects::COUPLED).union(Effects::TRANSMISSION);
 
-/// A scene with thin sheets, and the same with panes of rough, tinted glass in their place, half of which
-/// diffuse a third of the light.
+/// A scene with thin sheets, and the same with panes of rough, tinted glass in their place; every other pane
+/// diffuses a third of the light.
 fn thin_scenes() -> [(&'static str, Scene); 2] {
     let paper = scene("paper.glb");
     let mut panes = paper.clone();

@@ -5,7 +5,7 @@
 
 #include "arealight/shadows/sequence.glsl"
 
-// Whether a surface of which the part `alpha` is there, 0 to 1, hides what is behind it along a ray of this
+// Whether a surface with a coverage of `alpha`, 0 to 1, hides what is behind it along a ray of this
 // unit direction: always or never at 1 and 0, else by a hash of the direction and of the surface's number
 // (pcg3d, Jarzynski and Olano 2020). Over rays the part `alpha` is hidden, and of two surfaces one behind the
 // other each by a chance of its own, so that on average light arrives by the product of what they let

@@ -24,7 +24,7 @@ fn case(more: &str, light: &str) -> String {
     )
 }
 
-/// So many primitives of one accessor of 25 million zeros, of which the file holds none.
+/// So many primitives of one accessor of 25 million zeros; the file holds no byte of them.
 fn of_zeros(primitives: usize) -> String {
     let one = r#"{"attributes": {"POSITION": 0}, "material": 0}"#;
     format!(
