@@ -114,9 +114,6 @@ pub fn matching(pattern: &str) -> Vec<Row> {
 }
 
 /// Compiles a row on this process's null hardware.
-///
-/// # Errors
-/// [`HostError`] where the driver refuses.
 pub fn measure(compiler: &Compiler, row: &Row) -> Result<Measured, HostError> {
     Ok(Measured::new(row, &compiler.statistics(&row.shader())?))
 }

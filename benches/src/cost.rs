@@ -84,9 +84,6 @@ struct Run {
 }
 
 /// Measures every method in `rounds` rounds, after one that warms up.
-///
-/// # Errors
-/// [`EngineError`] where the device fails.
 pub fn measure(host: &Host, rounds: usize) -> Result<Vec<Cost>, EngineError> {
     let passes = Passes::new(host.clone())?;
     let vertices = host.storage_buffer("vertices", &quads())?;

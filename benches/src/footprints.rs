@@ -207,9 +207,6 @@ impl Footprints {
 }
 
 /// Runs every method on a device. `progress` is told how many more poses are integrated.
-///
-/// # Errors
-/// [`EngineError`] where the device fails.
 pub fn run(
     host: &Host,
     table: &LightTable,

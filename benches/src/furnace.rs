@@ -112,9 +112,6 @@ fn places(steps: u32) -> impl Iterator<Item = Place> {
 }
 
 /// Runs every level. `progress` is told of levels done.
-///
-/// # Errors
-/// [`EngineError`] where the device fails.
 pub fn run(
     host: &Host,
     table: &LightTable,

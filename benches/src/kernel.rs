@@ -43,9 +43,6 @@ pub struct FormFactorKernel {
 
 impl FormFactorKernel {
     /// Makes the pipelines of `methods`.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device is too old or out of memory.
     pub fn new(host: &Host, methods: &[&Method]) -> Result<Self, EngineError> {
         let passes = Passes::new(host.clone())?;
         let methods: Vec<u32> = methods.iter().map(|method| method.id).collect();
@@ -56,9 +53,6 @@ impl FormFactorKernel {
     }
 
     /// The bits of each case's form factor, for each method in turn. Bits, since a conversion may hide a NaN.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails or is out of memory.
     pub fn run(&self, cases: &[HardCase]) -> Result<Vec<Vec<u32>>, EngineError> {
         let (polygons, offsets) = pack(cases);
         let host = self.passes.host();

@@ -166,9 +166,6 @@ pub struct Ladder {
 const PATCHES_A_ROW: usize = 16;
 
 /// Runs everything on a device. `progress` is told how many more of [`Options::steps`] are done.
-///
-/// # Errors
-/// [`EngineError`] where the device fails.
 pub fn run(
     host: &Host,
     table: &LightTable,

@@ -28,6 +28,8 @@
 //!
 //! `arealight bench` is the way to run them; `cargo bench` has those of time.
 
+#![allow(clippy::missing_errors_doc, clippy::missing_panics_doc)] // what the types say
+
 pub mod compiled;
 pub mod cost;
 pub mod footprints;

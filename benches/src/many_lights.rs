@@ -106,9 +106,6 @@ pub fn steps(options: &Options) -> u64 {
 }
 
 /// Shades every frame by every way.
-///
-/// # Errors
-/// [`EngineError`] where the device fails or its memory is too small.
 pub fn run(
     host: &Host,
     table: &LightTable,

@@ -90,9 +90,6 @@ struct Pixels {
 /// Renders a scene without shadows, at the exact level by one specular lobe, by two and over half vectors,
 /// and twice by Monte Carlo. `progress` is told how many samples a pixel are done, of two times
 /// [`Options::samples`].
-///
-/// # Errors
-/// [`MaterialsError`].
 pub fn run(
     host: &Host,
     table: &LightTable,

@@ -7,9 +7,6 @@ use glam::DVec3;
 use std::sync::Arc;
 
 /// Loads pictures, a layer each, in the size of the largest, with what the texels of each are divided by.
-///
-/// # Errors
-/// [`EngineError`] where one cannot be loaded, or the device or its memory is too small.
 pub fn load(
     engine: &mut Engine,
     pictures: &[Arc<Texture>],

@@ -12,9 +12,6 @@
 use arealight::LightTable;
 
 /// The table.
-///
-/// # Panics
-/// Never: the file is a part of the program, and a test reads it.
 pub fn table() -> LightTable {
     arealight_table::read(include_bytes!("../tables/published-quality.exr"))
         .expect("the table in the repository is valid")

@@ -188,9 +188,6 @@ pub enum ShadowLevelsError {
 }
 
 /// Runs every level on each scene. `progress` is told of steps done.
-///
-/// # Errors
-/// [`ShadowLevelsError`].
 pub fn run(
     host: &Host,
     table: &LightTable,

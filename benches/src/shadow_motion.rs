@@ -193,9 +193,6 @@ pub struct Still {
 }
 
 /// Runs every scheme over films of each scene. `progress` is told of frames done, `show` of stills.
-///
-/// # Errors
-/// [`ShadowLevelsError`].
 pub fn run(
     host: &Host,
     table: &LightTable,

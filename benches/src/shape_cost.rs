@@ -146,9 +146,6 @@ impl Run {
 }
 
 /// Measures every method in `rounds` rounds, after one that warms up.
-///
-/// # Errors
-/// [`EngineError`] where the device fails.
 pub fn measure(host: &Host, rounds: usize) -> Result<Vec<ShapeCost>, EngineError> {
     let passes = Passes::new(host.clone())?;
     let mut runs =

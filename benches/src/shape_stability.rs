@@ -58,9 +58,6 @@ impl ShapeRow {
 
 /// Runs `samples` shapes of each family, and as many of random bits for each kind. Another `seed` makes other
 /// shapes.
-///
-/// # Errors
-/// [`EngineError`] where the device fails.
 pub fn run(
     host: &Host,
     samples: u64,

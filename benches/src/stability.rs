@@ -89,9 +89,6 @@ impl Stability {
 
 /// Runs the battery on a device. `table` gives the lobes of the families that have one; `progress` is told
 /// how many more cases are done.
-///
-/// # Errors
-/// [`EngineError`] where the device fails.
 pub fn run(
     host: &Host,
     table: &LightTable,

@@ -94,9 +94,6 @@ impl Mips {
 /// Measures both on an image of `side` × `side` texels, a power of two, in `rounds` rounds after one that
 /// warms up.
 ///
-/// # Errors
-/// [`EngineError`] where the device fails.
-///
 /// # Panics
 /// Where `side` is no size of a light's texture.
 pub fn measure(host: &Host, side: u32, rounds: usize) -> Result<TextureCost, EngineError> {

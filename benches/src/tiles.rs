@@ -79,9 +79,6 @@ pub struct TiledFrame {
 }
 
 /// Shades a frame by each method in `rounds` rounds, after one that warms up.
-///
-/// # Errors
-/// [`EngineError`] where the device fails.
 pub fn measure(
     host: &Host,
     name: &str,
@@ -140,9 +137,6 @@ pub(crate) fn difference(truth: &[Vec4], found: &[Vec4]) -> [f64; 2] {
 
 /// A square floor of `side` metres and of this roughness about the origin, in y, which reflects half of what
 /// it scatters; and a camera from above that sees all of it in a picture of `aspect`. Without lights.
-///
-/// # Panics
-/// Never: the scene that its material is of is a part of the program.
 pub fn floor(roughness: f32, side: f64, aspect: f64) -> Scene {
     let sweep = include_bytes!("../../scenes/sweep.glb");
     let mut scene = Scene::from_bytes(sweep, "floor").expect("the scene in the repository is valid");

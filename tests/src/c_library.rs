@@ -22,9 +22,6 @@ use std::ffi::{CStr, c_char, c_void};
 use std::ptr::{null, null_mut};
 
 /// Asserts that a call failed with `expected`, and a message that has `words`.
-///
-/// # Panics
-/// Where it did not.
 #[track_caller]
 pub fn refused(result: ArealightResult, expected: ArealightResult, words: &str) {
     // SAFETY: the message is this thread's, and lives until its next failure.
@@ -34,9 +31,6 @@ pub fn refused(result: ArealightResult, expected: ArealightResult, words: &str) 
 }
 
 /// Asserts that a call did not fail.
-///
-/// # Panics
-/// Where it did, with its message.
 #[track_caller]
 pub fn good(result: ArealightResult) {
     // SAFETY: as above.
@@ -136,9 +130,6 @@ pub struct CLibrary<'a> {
 
 impl<'a> CLibrary<'a> {
     /// As a host in C makes it.
-    ///
-    /// # Panics
-    /// Where the library refuses.
     pub fn new(engine: &'a TestEngine) -> Self {
         let host = engine.host();
         // SAFETY: the system's loader is what the host of the tests was opened with.
@@ -169,17 +160,11 @@ impl<'a> CLibrary<'a> {
     }
 
     /// A pass for surfaces.
-    ///
-    /// # Panics
-    /// Where the library refuses.
     pub fn pass(&self, surfaces: u32) -> *mut ArealightPass {
         self.pass_with(&ArealightPassOptions { surfaces, ..ArealightPassOptions::default() })
     }
 
     /// A pass of these options.
-    ///
-    /// # Panics
-    /// Where the library refuses.
     pub fn pass_with(&self, options: &ArealightPassOptions) -> *mut ArealightPass {
         let mut pass = null_mut();
         // SAFETY: the pointers are valid.
@@ -188,9 +173,6 @@ impl<'a> CLibrary<'a> {
     }
 
     /// What memory the table needs.
-    ///
-    /// # Panics
-    /// Where the library refuses.
     pub fn table_memory(&self) -> ArealightMemory {
         let mut memory =
             ArealightMemory { size: 0, alignment: 0, staging_size: 0, memory_type_bits: 0, reserved: 0 };
@@ -200,9 +182,6 @@ impl<'a> CLibrary<'a> {
     }
 
     /// Records the upload of the table to memory, with texels that `staging` gets.
-    ///
-    /// # Panics
-    /// Where the device refuses.
     pub fn record_upload(
         &self,
         memory: vk::DeviceMemory,
@@ -229,9 +208,6 @@ impl<'a> CLibrary<'a> {
     }
 
     /// Uploads the table.
-    ///
-    /// # Panics
-    /// Where the library or the device refuses.
     pub fn upload(&self, memory: &DeviceMemory) {
         let host = self.engine.host();
         let staging = self.staging();
@@ -240,18 +216,12 @@ impl<'a> CLibrary<'a> {
     }
 
     /// A buffer for the table's texels.
-    ///
-    /// # Panics
-    /// Where memory is out.
     pub fn staging(&self) -> Buffer {
         let (size, usage) = (self.table_memory().staging_size, vk::BufferUsageFlags::TRANSFER_SRC);
         self.engine.host().buffer("table", size, usage, Location::Upload).expect("memory")
     }
 
     /// A set of a layout, with its pool.
-    ///
-    /// # Panics
-    /// Where memory is out.
     pub fn set(&self, layout: &ArealightSetLayout) -> (vk::DescriptorSet, DescriptorPool) {
         let sizes = [
             (vk::DescriptorType::SAMPLED_IMAGE, layout.sampled_images),
@@ -271,9 +241,6 @@ impl<'a> CLibrary<'a> {
     }
 
     /// What the pixel shows by a pass, as [`OnePixel::shade`] says it of the recorder's.
-    ///
-    /// # Panics
-    /// Where the library or the device refuses.
     pub fn shade(
         &self,
         pass: *mut ArealightPass,
@@ -369,9 +336,6 @@ impl Drop for CLibrary<'_> {
 }
 
 /// What descriptor sets of a pass are made with.
-///
-/// # Panics
-/// Where the library refuses.
 #[expect(clippy::not_unsafe_ptr_arg_deref, reason = "the library refuses a pass that is none")]
 pub fn set_layout(pass: *const ArealightPass) -> ArealightSetLayout {
     let mut layout = ArealightSetLayout::default();
@@ -389,9 +353,6 @@ pub struct DeviceMemory {
 
 impl DeviceMemory {
     /// Of the first type that will do.
-    ///
-    /// # Panics
-    /// Where memory is out.
     pub fn new(engine: &TestEngine, needed: &ArealightMemory) -> Self {
         let info = vk::MemoryAllocateInfo::default()
             .allocation_size(needed.size)

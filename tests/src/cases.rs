@@ -25,9 +25,6 @@ pub struct Cases {
 
 impl Cases {
     /// Packs shading points as the engine does.
-    ///
-    /// # Panics
-    /// Where a light cannot be shaded.
     pub fn new(points: &[EvalPoint]) -> Self {
         let mut lights = PackedLights::default();
         let mut cases = Vec::with_capacity(points.len());
@@ -64,9 +61,6 @@ impl Cases {
 
 impl TestEngine {
     /// The bits of each case's answer: radiance in three channels, and zero.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn run(&self, given: &Cases, effects: Effects, quality: Quality) -> Vec<[u32; 4]> {
         let host = self.host();
         let dispatch = plan::eval(effects, quality, given.cases.len() as u32);
@@ -100,9 +94,6 @@ impl TestEngine {
 
     /// Each case's first channel by a level, for a pass that has these lobes: a form factor where radiance
     /// and albedo are one.
-    ///
-    /// # Panics
-    /// Where the device fails, or an answer's bits are not those of a number from 0 to 1 and a rounding.
     pub fn factors(&self, given: &Cases, lobes: Effects, level: Level) -> Vec<f64> {
         // Bits of NaN, infinity and negative numbers are all larger
         let largest = (1.0_f32 + 1e-6).to_bits();

@@ -59,9 +59,6 @@ impl Comparison {
     }
 
     /// Fails with the first few differences that are too large, or if nothing was compared.
-    ///
-    /// # Panics
-    /// As said.
     pub fn assert_all(self) {
         assert!(self.compared > 0, "{}: nothing was compared", self.what);
         println!(

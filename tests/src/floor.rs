@@ -68,8 +68,7 @@ pub fn lamps() -> Vec<Light> {
 }
 
 impl<'a> Floor<'a> {
-    /// # Panics
-    /// Where the device fails.
+    /// The images and buffers; the device is held to be enough.
     pub fn new(engine: &'a TestEngine, lights: &[Light]) -> Self {
         let (sampled, float) = (vk::ImageUsageFlags::SAMPLED, vk::Format::R32G32B32A32_SFLOAT);
         let texels: Vec<_> = pixels().map(|pixel| position(pixel).extend(1.0).to_array()).collect();
@@ -138,9 +137,6 @@ impl<'a> Floor<'a> {
 
     /// What the images of radiance hold after a frame by a new pass, over [`BEFORE`]. By a context with push
     /// descriptors they are pushed.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn shade(
         &self,
         options: ShadeOptions,
@@ -174,9 +170,6 @@ impl<'a> Floor<'a> {
     }
 
     /// What the image of radiance holds after these commands, over [`BEFORE`].
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn picture_after(&self, record: impl FnOnce(vk::CommandBuffer)) -> Vec<Vec4> {
         self.radiance.upload(&vec![BEFORE.to_array(); pixels().count()], Usage::COMPUTE_WRITE).unwrap();
         self.engine.host().submit(record).unwrap();
@@ -211,9 +204,6 @@ pub fn one_light(
 }
 
 /// An image of `extent` with these texels, to be read or stored to.
-///
-/// # Panics
-/// Where the device fails.
 pub fn image<T: bytemuck::Pod>(
     engine: &TestEngine,
     extent: [u32; 2],

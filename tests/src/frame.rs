@@ -7,18 +7,12 @@ use glam::{Vec3, Vec4};
 use std::path::Path;
 
 /// The scene in the file of that name in `scenes`.
-///
-/// # Panics
-/// Where there is none, or it does not load.
 pub fn scene(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
     Scene::load(path).expect("our own scenes load")
 }
 
 /// Hands on the view of a scene from its first camera, under `lights`.
-///
-/// # Panics
-/// Where the scene has no camera, or the device fails.
 pub fn with_renderer<T>(
     engine: &Engine,
     scene: &Scene,
@@ -33,9 +27,6 @@ pub fn with_renderer<T>(
 }
 
 /// The bits of the picture that was shaded.
-///
-/// # Panics
-/// Where the device fails.
 pub fn bits(renderer: &mut SceneRenderer<'_>) -> Vec<[u32; 4]> {
     let texels = renderer.radiance().expect("the picture comes back");
     texels.into_iter().map(|texel: Vec4| texel.to_array().map(f32::to_bits)).collect()

@@ -61,9 +61,6 @@ pub enum Function {
 impl TestEngine {
     /// Runs a kernel of the tests over `count` invocations, with `inputs` bound in turn and the results, `R`
     /// per invocation, at the last binding.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn dispatch<R: Pod>(
         &self,
         kernel: &'static Kernel,
@@ -93,9 +90,6 @@ impl TestEngine {
     }
 
     /// Calls a function of the library.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn probe(&self, function: Function, arguments: &[[[f32; 4]; 3]]) -> Vec<[[f32; 4]; 4]> {
         let given = self.host().storage_buffer("arguments", arguments).expect("memory");
         let inputs = [self.table(), Resource::buffer(given.handle())];
@@ -103,25 +97,16 @@ impl TestEngine {
     }
 }
 /// The shade kernel with the example's G-buffer, by the compiler that a host may have.
-///
-/// # Panics
-/// Where that is missing.
 pub fn shade_with_bridge() -> Vec<u32> {
     with_bridge("shade", "AREALIGHT_HOST_G_BUFFER")
 }
 
 /// The shade kernel with the example's shadows, likewise.
-///
-/// # Panics
-/// As [`shade_with_bridge`].
 pub fn shade_with_visibility() -> Vec<u32> {
     with_bridge("shade", "AREALIGHT_HOST_VISIBILITY")
 }
 
 /// The kernel of shadow rays with the example's blocker, or with our walk, which asks what masks cut out.
-///
-/// # Panics
-/// As [`shade_with_bridge`].
 pub fn shadow_rays_with_bridge(macro_name: &str) -> Vec<u32> {
     with_bridge("shadow_rays", macro_name)
 }

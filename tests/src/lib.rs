@@ -1,6 +1,8 @@
 //! What the GPU tests share: an engine that is validated, random shading points, and a comparison that
 //! counts what it compared.
 
+#![allow(clippy::missing_errors_doc, clippy::missing_panics_doc)] // what the types say
+
 pub mod c_library;
 mod cases;
 mod compare;
@@ -51,25 +53,16 @@ impl std::ops::DerefMut for TestEngine {
 
 impl TestEngine {
     /// The engine on a validated device; `None` where there is no device and none is required.
-    ///
-    /// # Panics
-    /// Where a device is required and missing, or the upload fails.
     pub fn new() -> Option<Self> {
         Self::with_format(TableFormat::default())
     }
 
     /// As [`TestEngine::new`], with the table in another format.
-    ///
-    /// # Panics
-    /// As [`TestEngine::new`].
     pub fn with_format(format: TableFormat) -> Option<Self> {
         Some(Self::of_host(arealight_engine::host::testing::device_or_skip()?, format))
     }
 
     /// As [`TestEngine::new`], on a device with `VK_KHR_push_descriptor`; `None` where it has none, too.
-    ///
-    /// # Panics
-    /// As [`TestEngine::new`].
     pub fn with_push_descriptors() -> Option<Self> {
         let host = arealight_engine::host::testing::device_with_push_descriptors()?;
         Some(Self::of_host(host, TableFormat::default()))
@@ -82,9 +75,6 @@ impl TestEngine {
     }
 
     /// As [`TestEngine::new`], with modules handed to the driver as they are.
-    ///
-    /// # Panics
-    /// As [`TestEngine::new`].
     pub fn with_whole_modules() -> Option<Self> {
         let Self { engine, host } = Self::new()?;
         Some(Self { engine: engine.with_whole_modules(), host })

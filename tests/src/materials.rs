@@ -88,9 +88,6 @@ pub fn step_within_rounding(quality: Quality, given: &EvalPoint) -> f64 {
 impl TestEngine {
     /// Compares points under polygons with their float64 twins. The twin's twin: of more than a tenth of them
     /// it notices a `change` of the surface.
-    ///
-    /// # Panics
-    /// Where they differ by more than `bound`, or the device fails.
     pub fn assert_follows_polygon_twin(
         &self,
         what: &str,
@@ -115,9 +112,6 @@ impl TestEngine {
     }
 
     /// Compares points under disks, spheres and tubes with their float64 twins.
-    ///
-    /// # Panics
-    /// Where they differ by more than `bound`, or the device fails.
     pub fn assert_follows_shape_twin(
         &self,
         what: &str,
@@ -136,18 +130,12 @@ impl TestEngine {
     }
 
     /// The answers' bits.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn eval_bits(&self, points: &[EvalPoint], quality: Quality) -> Vec<[u32; 3]> {
         let answers = self.eval(points, quality).unwrap();
         answers.iter().map(|answer| answer.to_array().map(f32::to_bits)).collect()
     }
 
     /// What surfaces send of white light from everywhere, in the first channel. It is no more than they get.
-    ///
-    /// # Panics
-    /// Where it is, or is not finite, or the device fails.
     pub fn light_from_everywhere(&self, surfaces: &[(Surface, DVec3)], quality: Quality) -> Vec<f32> {
         let faces = box_faces();
         let under = |&(surface, view): &(Surface, DVec3)| {

@@ -54,9 +54,6 @@ impl Drop for Drawing<'_> {
 
 impl Multisampled {
     /// Draws `samples` texels of each pixel of [`SIZE`].
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn new(engine: &TestEngine, samples: u32, texels: &[Texel]) -> Self {
         let host = engine.host();
         let images = ["position", "normal", "color"].map(|name| {

@@ -53,9 +53,6 @@ pub struct OnePixel<'a> {
 impl<'a> OnePixel<'a> {
     /// A grey, half rough, a quarter metallic surface without a coat that looks up, at `position` (w = 0:
     /// none), and what the depth buffer says of it.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn new(engine: &'a TestEngine, position: Vec4, depth: f32) -> Self {
         let float = vk::Format::R32G32B32A32_SFLOAT;
         let planes = Planes::from_fn(|plane| match plane {
@@ -76,9 +73,6 @@ impl<'a> OnePixel<'a> {
     }
 
     /// Puts a texel into a plane.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn set<T: Pod>(&mut self, plane: Plane, format: vk::Format, texel: T) {
         self.planes[plane] = Some(sampled(self.engine, format, texel));
     }
@@ -89,9 +83,6 @@ impl<'a> OnePixel<'a> {
     }
 
     /// Under [`lamp`], of surfaces that need these effects beside both lobes and a reflectance of their own.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn shade_under_lamp(&self, layout: GBufferLayout, effects: Effects) -> Vec3 {
         let surfaces = Effects::DIFFUSE | Effects::GLOSSY | Effects::SPECULAR_INPUT | effects;
         let options = ShadeOptions { surfaces, g_buffer: layout, ..ShadeOptions::default() };
@@ -99,18 +90,12 @@ impl<'a> OnePixel<'a> {
     }
 
     /// The one image of a pass that has one.
-    ///
-    /// # Panics
-    /// Where the options say that there are two, or the device fails.
     pub fn shade(&self, options: ShadeOptions, lights: &[Light], camera: Vec3, matrix: Option<Mat4>) -> Vec4 {
         assert!(!options.separate_lobes);
         self.shade_images(options, lights, camera, matrix)[0]
     }
 
     /// The image of both lobes or of the diffuse one, and that of the glossy one, which held [`BEFORE`].
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn shade_images(
         &self,
         options: ShadeOptions,
@@ -176,9 +161,6 @@ fn image(engine: &TestEngine, format: vk::Format, usage: vk::ImageUsageFlags) ->
 }
 
 /// An image of one texel, to be read.
-///
-/// # Panics
-/// Where the device fails, or the texel is not of the format's size.
 fn sampled<T: Pod>(engine: &TestEngine, format: vk::Format, texel: T) -> Image {
     let image = image(engine, format, vk::ImageUsageFlags::SAMPLED);
     image.upload(&[texel], Usage::COMPUTE_READ).unwrap();
@@ -186,9 +168,6 @@ fn sampled<T: Pod>(engine: &TestEngine, format: vk::Format, texel: T) -> Image {
 }
 
 /// An image for radiance, which holds [`BEFORE`].
-///
-/// # Panics
-/// Where the device fails.
 pub fn stored(engine: &TestEngine, format: RadianceFormat) -> Image {
     let before = BEFORE.to_array();
     match format {
@@ -208,9 +187,6 @@ pub fn stored(engine: &TestEngine, format: RadianceFormat) -> Image {
 }
 
 /// What a pass left in such an image.
-///
-/// # Panics
-/// Where the device fails.
 pub fn read(image: &Image, format: RadianceFormat) -> Vec4 {
     match format {
         RadianceFormat::Rgba32Float => {

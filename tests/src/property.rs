@@ -19,9 +19,6 @@ pub struct Property<'a> {
 
 impl<'a> Property<'a> {
     /// A property of groups of one size. `table` for points that are glossy, else they are Lambert's.
-    ///
-    /// # Panics
-    /// Where groups differ in size, or there is none.
     pub fn new(what: &str, table: Option<&'a LightTable>, groups: &[Vec<EvalPoint>]) -> Self {
         let size = groups.first().map_or(0, Vec::len);
         assert!(size > 0 && groups.iter().all(|group| group.len() == size), "{what}: groups of one size");
@@ -71,9 +68,6 @@ impl<'a> Property<'a> {
 
     /// Asserts for every level and group that both sides of `relation` are the same, but for the bounds of
     /// the group's form factors.
-    ///
-    /// # Panics
-    /// Where they are not.
     pub fn assert(&self, engine: &TestEngine, levels: &[Level], relation: impl Fn(&[f64]) -> [f64; 2]) {
         for &level in levels {
             let mut comparison = Comparison::new(format!("{}, {level}", self.what));
@@ -87,9 +81,6 @@ impl<'a> Property<'a> {
 
     /// The twin of [`Property::assert`]: a relation that does not hold is noticed in more than this part of
     /// the groups.
-    ///
-    /// # Panics
-    /// Where it is not.
     pub fn assert_fails(
         &self,
         engine: &TestEngine,

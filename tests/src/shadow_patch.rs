@@ -63,9 +63,6 @@ pub struct PatchPasses<'a> {
 
 impl<'a> PatchPasses<'a> {
     /// Makes them.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn new(engine: &'a TestEngine, options: ShadeOptions, filter: ShadowFilter) -> Self {
         let shadows = ShadowOptions { filter, ..ShadowOptions::default() };
         // SAFETY: Host::submit waits, and the passes are dropped before the engine.
@@ -79,9 +76,6 @@ impl<'a> PatchPasses<'a> {
     }
 
     /// As [`PatchPasses::new`], with the lights of tiles.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn with_tiles(engine: &'a TestEngine, options: ShadeOptions) -> Self {
         let passes = Self::new(engine, options, ShadowFilter::Off);
         let tiles = TileOptions { least_quads: 0, ..TileOptions::default() };
@@ -93,9 +87,6 @@ impl<'a> PatchPasses<'a> {
 
     /// As [`PatchPasses::new`], where a module of the host's says what blocks, which reads set 1 of this
     /// layout.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn with_blocker(
         engine: &'a TestEngine,
         options: ShadeOptions,
@@ -116,9 +107,6 @@ impl<'a> PatchPasses<'a> {
 impl<'a> PatchPasses<'a> {
     /// As [`PatchPasses::new`], where a module of the host's says what part of each light arrives, which
     /// reads set 1 of this layout.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn with_visibility(
         engine: &'a TestEngine,
         options: ShadeOptions,
@@ -135,9 +123,6 @@ impl<'a> PatchPasses<'a> {
 
 impl ShadowPatch {
     /// Runs both passes.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn run(&self, passes: &PatchPasses<'_>) -> PatchShadows {
         let PatchPasses { engine, shade, shadow: shadows, options, blocker_set, visibility_set } = passes;
         let host = engine.host();
@@ -229,9 +214,6 @@ fn image(engine: &TestEngine, format: vk::Format, usage: vk::ImageUsageFlags) ->
 }
 
 /// An image of one colour, to be read.
-///
-/// # Panics
-/// Where the device fails.
 pub fn filled(engine: &TestEngine, texel: [f32; 4]) -> Image {
     let image = image(engine, vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::SAMPLED);
     image.upload(&vec![texel; (SIDE * SIDE) as usize], Usage::COMPUTE_READ).unwrap();
@@ -239,9 +221,6 @@ pub fn filled(engine: &TestEngine, texel: [f32; 4]) -> Image {
 }
 
 /// An image to be written.
-///
-/// # Panics
-/// Where the device fails.
 pub fn stored(engine: &TestEngine, format: vk::Format) -> Image {
     let image = image(engine, format, vk::ImageUsageFlags::STORAGE);
     let host = engine.host();

@@ -11,9 +11,6 @@ use arealight_vk::Resource;
 
 impl TestEngine {
     /// What a white lobe reflects of ellipses and of spheres, clipped at a horizon (`AREALIGHT_HORIZON_*`).
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn lobes(&self, horizon: u32, level: u32, arguments: &[ShapeArguments]) -> Vec<[f32; 2]> {
         let constants = [(0, ShapeFunction::Lobe as u32), (1, level), (2, horizon)];
         let found = self.call(&constants, arguments, &vec![0; arguments.len()]);
@@ -21,9 +18,6 @@ impl TestEngine {
     }
 
     /// Form factors of tubes with their ends; cut by a surface whose normal is z where asked for.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn tubes(&self, cut: bool, level: u32, arguments: &[ShapeArguments], ends: &[Ends]) -> Vec<f32> {
         let constants = [(0, ShapeFunction::Tube as u32), (1, level), (2, u32::from(cut))];
         let ends: Vec<u32> = ends.iter().map(|ends| *ends as u32).collect();
@@ -38,17 +32,11 @@ impl TestEngine {
     }
 
     /// Calls a function on shapes, by form factor bits.
-    ///
-    /// # Panics
-    /// Where the device fails.
     pub fn shapes(&self, function: ShapeFunction, level: u32, arguments: &[ShapeArguments]) -> Vec<[f32; 4]> {
         self.call(&[(0, function as u32), (1, level), (2, 0)], arguments, &vec![0; arguments.len()])
     }
 
     /// Form factors of ellipses, of both sides.
-    ///
-    /// # Panics
-    /// Where the device fails, or a result is not in [0, 1] by its bits.
     pub fn ellipses(&self, function: ShapeFunction, level: u32, ellipses: &[Ellipse]) -> Vec<f64> {
         let arguments: Vec<_> = ellipses.iter().map(ellipse_arguments).collect();
         let found = self.shapes(function, level, &arguments);

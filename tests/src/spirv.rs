@@ -9,9 +9,6 @@ pub fn words(bytes: &[u8]) -> Vec<u32> {
 }
 
 /// What a program makes of a module that it reads; `None` where the program is missing.
-///
-/// # Panics
-/// Where it is missing and a device is required, or does not read.
 pub fn tool(name: &str, arguments: &[&str], module: &[u8]) -> Option<Output> {
     let started = Command::new(name)
         .args(arguments)

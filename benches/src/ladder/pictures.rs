@@ -76,9 +76,6 @@ fn effects_of(scene: &Scene) -> Effects {
 /// Renders scenes, such as the frames of a film, by the two methods that stand beside the truth in a
 /// document: the default level, and a yardstick with the published table. The scenes share the first one's
 /// textures.
-///
-/// # Errors
-/// [`EngineError`] where the device fails.
 pub fn beside_the_truth(
     host: &Host,
     table: &LightTable,

@@ -25,9 +25,6 @@ pub struct Deferred {
 
 impl Deferred {
     /// Makes the engine for pictures of `size` pixels.
-    ///
-    /// # Errors
-    /// Where the device refuses.
     pub fn new(host: &Host, size: [u32; 2]) -> Result<Self> {
         // doc: new
         // How your surfaces are stored and shaded. It adds to the emission that was drawn
@@ -55,9 +52,6 @@ impl Deferred {
     }
 
     /// Goes on with pictures of another size. Waits for the frames in flight, which use the images.
-    ///
-    /// # Errors
-    /// Where the device refuses.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         self.frames.wait()?;
         self.g_buffer = GBuffer::new(&self.host, size, self.g_buffer.users)?;
@@ -66,9 +60,6 @@ impl Deferred {
 
     /// Draws and shades the scene as it is after `seconds`, and records `then` behind it, which is given the
     /// place among the frames in flight, and the commands. Waits for nothing but the frame before the last.
-    ///
-    /// # Errors
-    /// Where the device refuses, and those of `then`.
     pub fn frame(
         &mut self,
         seconds: f64,
@@ -109,9 +100,6 @@ impl Deferred {
     }
 
     /// Waits for the last frame, and returns its radiance.
-    ///
-    /// # Errors
-    /// Where the device refuses.
     pub fn picture(&mut self) -> Result<Picture> {
         Picture::read(&self.frames, &self.g_buffer.radiance, Usage::COMPUTE_WRITE)
     }

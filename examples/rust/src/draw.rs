@@ -66,9 +66,6 @@ pub struct Draw {
 impl Draw {
     /// Makes the render pass, its framebuffer and its pipeline.
     ///
-    /// # Errors
-    /// Where memory is out.
-    ///
     /// # Safety
     /// The images and the layout outlive this, and no pending work uses it when it is dropped.
     pub unsafe fn new(host: &Host, options: &DrawOptions<'_>) -> Result<Self> {
@@ -304,9 +301,6 @@ impl Drop for Draw {
 }
 
 /// A shader, which whoever asks for it destroys.
-///
-/// # Errors
-/// Where memory is out.
 pub fn shader_module(host: &Host, spirv: &[u8]) -> Result<vk::ShaderModule> {
     let word = |bytes: &[u8]| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
     let words: Vec<u32> = spirv.chunks_exact(4).map(word).collect();

@@ -81,9 +81,6 @@ impl Uniforms {
 
 impl Forward {
     /// Makes the engine for pictures of `size` pixels.
-    ///
-    /// # Errors
-    /// Where the device refuses.
     pub fn new(host: &Host, size: [u32; 2]) -> Result<Self> {
         let frames = Frames::new(host)?;
         let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
@@ -142,9 +139,6 @@ impl Forward {
     }
 
     /// Draws the scene as it is after `seconds`. Waits for nothing but the frame before the last.
-    ///
-    /// # Errors
-    /// Where the device refuses.
     pub fn frame(&mut self, seconds: f64) -> Result<()> {
         let Self { frames, places, draw, size, .. } = self;
         frames.submit(|place, commands| {
@@ -165,9 +159,6 @@ impl Forward {
     }
 
     /// Waits for the last frame, and returns its radiance.
-    ///
-    /// # Errors
-    /// Where the device refuses.
     pub fn picture(&mut self) -> Result<Picture> {
         // What the render pass left is visible to transfers
         Picture::read(&self.frames, &self.radiance, Usage::COPY_SOURCE)

@@ -20,6 +20,8 @@
 //! Both make the same picture. What is theirs alone is in [`deferred`], [`recorded`] and [`forward`]; how
 //! they draw triangles is in [`draw`].
 
+#![allow(clippy::missing_errors_doc, clippy::missing_panics_doc)] // what the types say
+
 pub mod command_line;
 pub mod deferred;
 pub mod draw;

@@ -16,9 +16,6 @@ pub struct Picture {
 
 impl Picture {
     /// Waits for the frames in flight, and reads an image of `R32G32B32A32_SFLOAT` whose last use was this.
-    ///
-    /// # Errors
-    /// Where the device refuses.
     pub fn read(frames: &Frames, image: &Image, last: Usage) -> Result<Self> {
         frames.wait()?;
         Ok(Self { size: image.extent(), pixels: image.download(last)? })

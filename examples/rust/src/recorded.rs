@@ -41,9 +41,6 @@ struct Place {
 
 impl Recorded {
     /// Makes the engine for pictures of `size` pixels.
-    ///
-    /// # Errors
-    /// Where the device refuses.
     pub fn new(host: &Host, size: [u32; 2]) -> Result<Self> {
         // doc: context
         // SAFETY: the handles, which stay yours, belong together, and outlive what is made of the context.
@@ -146,9 +143,6 @@ impl Recorded {
     }
 
     /// Goes on with pictures of another size. Waits for the frames in flight.
-    ///
-    /// # Errors
-    /// Where the device refuses.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         // doc: resize
         // Make what has a size anew when no frame uses it, and point the sets at it: the pass
@@ -160,9 +154,6 @@ impl Recorded {
     }
 
     /// Draws and shades the scene as it is after `seconds`. Waits for nothing but the frame before the last.
-    ///
-    /// # Errors
-    /// Where the device refuses.
     pub fn frame(&mut self, seconds: f64) -> Result<()> {
         let Self { frames, places, tile_lists, g_buffer, shade, .. } = self;
         frames.submit(|index, commands| {
@@ -195,9 +186,6 @@ impl Recorded {
     }
 
     /// Waits for the last frame, and returns its radiance.
-    ///
-    /// # Errors
-    /// Where the device refuses.
     pub fn picture(&mut self) -> Result<Picture> {
         Picture::read(&self.frames, &self.g_buffer.radiance, Usage::COMPUTE_WRITE)
     }

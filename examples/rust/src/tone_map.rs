@@ -24,9 +24,6 @@ pub struct ToneMap {
 impl ToneMap {
     /// Makes the pass for an image of `size` pixels, of `R32G32B32A32_SFLOAT`, in `GENERAL` layout.
     ///
-    /// # Errors
-    /// Where memory is out.
-    ///
     /// # Safety
     /// The image outlives the use of this, and no pending work uses this when it is dropped.
     pub unsafe fn new(host: &Host, radiance: &Image, size: [u32; 2]) -> Result<Self> {

@@ -27,9 +27,6 @@ pub enum Shown {
 
 /// Opens a window of `size` pixels and shows the scene in it as time passes, until it is closed; or so many
 /// `frames`, each a thirtieth of a second after the other whatever the clock says.
-///
-/// # Errors
-/// Where the device refuses.
 pub fn show(size: [u32; 2], frames: Option<u32>) -> Result<Shown> {
     let nowhere = |why: &dyn Display| Ok(Shown::Nowhere(why.to_string()));
 

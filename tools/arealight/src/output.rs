@@ -49,9 +49,6 @@ pub fn say(text: &str) {
 }
 
 /// Prints `text`, as [`shown`], to standard output.
-///
-/// # Errors
-/// As [`print_styled`].
 pub fn print(text: &str) -> Result<ExitCode, Failure> {
     print_styled(&shown(text))
 }
@@ -85,9 +82,6 @@ pub fn say_what_is_not_shown(scene: &Scene, path: &Path) {
 
 /// Sees to it that a file can be written, before long work, and is none of those that are read. What is there
 /// stays as it is, and nothing new is left behind. A pipe or device is not touched.
-///
-/// # Errors
-/// [`Failure::Output`] if it cannot be written, [`Failure::Argument`] if it is read.
 pub fn check<'a>(path: &Path, read: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
     let output = Output::open(path).map_err(|error| Failure::output(path, error))?;
     let real = |path: &Path| path.canonicalize().ok();
@@ -109,9 +103,6 @@ pub fn is_stream(path: &Path) -> bool {
 
 /// Says what was done: on standard output, or on standard error where the work's own output, at `path`, goes
 /// to standard output.
-///
-/// # Errors
-/// As [`print`].
 pub fn say_beside(path: Option<&Path>, text: &str) -> Result<ExitCode, Failure> {
     if path.is_some_and(is_stream) {
         say(text);

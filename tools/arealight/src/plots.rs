@@ -61,18 +61,12 @@ impl Kind {
 }
 
 /// Sees to it that a file can be drawn and written, before long work.
-///
-/// # Errors
-/// [`Failure::Output`] if it cannot be written, [`Failure::NoProgram`] where there is no matplotlib.
 pub fn check(path: &Path) -> Result<(), Failure> {
     output::check(path, None)?;
     python().map(drop)
 }
 
 /// Draws what was found, and writes the file.
-///
-/// # Errors
-/// As [`check`].
 pub fn draw(kind: Kind, found: &Value, path: &Path) -> Result<(), Failure> {
     let bytes = drawn(kind, found)?;
     output::write(path, &bytes)

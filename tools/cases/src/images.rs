@@ -40,9 +40,6 @@ impl Images {
     }
 
     /// The image at a path from anywhere.
-    ///
-    /// # Errors
-    /// As [`Images::load`].
     pub fn read(&mut self, path: &Path) -> Result<Texture, String> {
         let about = std::fs::metadata(path).map_err(|error| error.to_string())?;
         if !about.is_file() {

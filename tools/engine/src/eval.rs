@@ -44,9 +44,6 @@ impl Engine {
 
     /// As [`Engine::eval`], by a kernel of one's own that has the bindings and constants of
     /// [`arealight_tool_kernels::kernels::EVAL`].
-    ///
-    /// # Errors
-    /// As [`Engine::eval`].
     pub fn eval_by(
         &self,
         kernel: &'static Kernel,

@@ -37,9 +37,6 @@ impl Engine {
     }
 
     /// As [`Engine::eval_shapes`], by pipelines that take shapes of that kind or of [`GpuShape::ANY`].
-    ///
-    /// # Errors
-    /// As [`Engine::eval_shapes`].
     pub fn eval_shapes_as(
         &self,
         kind: u32,

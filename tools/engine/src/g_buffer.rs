@@ -31,9 +31,6 @@ impl Index<Plane> for GBuffer {
 
 impl GBuffer {
     /// Makes the images; their contents are undefined.
-    ///
-    /// # Errors
-    /// [`EngineError::Host`] where the device has no such images or no memory for them.
     pub fn new(engine: &Engine, extent: [u32; 2]) -> Result<Self, EngineError> {
         let image = |name, format, extent| {
             engine.host().image(&ImageDescription {

@@ -6,6 +6,8 @@
 //! and tubes; [`SceneRenderer`] finds what a camera sees and shades it, by the fitted lobes or by Monte
 //! Carlo.
 
+#![allow(clippy::missing_errors_doc, clippy::missing_panics_doc)] // what the types say
+
 mod eval;
 mod eval_shapes;
 mod g_buffer;
@@ -115,9 +117,6 @@ pub struct Engine {
 
 impl Engine {
     /// Uploads `table` to the device of `host`.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device is too old, or memory or a submission fails.
     pub fn new(host: Host, table: &LightTable, format: TableFormat) -> Result<Self, EngineError> {
         let passes = Passes::new(host)?;
         let light_table = table.clone();
@@ -150,9 +149,6 @@ impl Engine {
     }
 
     /// The shade pass of these options; made once, and kept.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device cannot make it.
     pub fn shade_pass(&self, options: ShadeOptions) -> Result<Rc<Kept<ShadePass>>, EngineError> {
         let mut made = self.shade_passes.borrow_mut();
         match made.entry(options) {
@@ -181,9 +177,6 @@ impl Engine {
     }
 
     /// Uploads another table, to be bound in place of the engine's.
-    ///
-    /// # Errors
-    /// As [`Engine::new`].
     pub fn upload_table(
         &self,
         table: &LightTable,
@@ -193,9 +186,6 @@ impl Engine {
     }
 
     /// A storage buffer with the device that holds `items`; never empty, since a descriptor wants one.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device has none as large, or no memory.
     pub fn storage<T: Pod>(&self, name: &'static str, items: &[T]) -> Result<Buffer, EngineError> {
         self.check_storage(name, size_of_val(items) as u64)?;
         if items.is_empty() {

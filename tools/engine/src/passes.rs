@@ -30,9 +30,6 @@ pub struct Passes {
 
 impl Passes {
     /// On the device of `host`.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device is too old.
     pub fn new(host: Host) -> Result<Self, EngineError> {
         // SAFETY: The handles belong together and are kept alive by `host`, which this drops last.
         let context = unsafe { Context::new(host.instance(), host.physical_device(), host.device()) }?;
@@ -56,9 +53,6 @@ impl Passes {
     }
 
     /// The pipeline of `kernel`, whose name no other kernel has.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device cannot make it.
     pub fn pass(
         &self,
         kernel: &'static Kernel,
@@ -78,9 +72,6 @@ impl Passes {
 
     /// Makes all of these pipelines that are not made yet, on every processor. `progress` is called for each,
     /// from any thread.
-    ///
-    /// # Errors
-    /// As [`Passes::pass`].
     pub fn make_all(
         &self,
         wanted: &[(&'static Kernel, Vec<(u32, u32)>)],
@@ -169,9 +160,6 @@ pub struct ListPass<R, C> {
 
 impl<R: Pod, C: Pod> ListPass<R, C> {
     /// Runs it, and waits: GPU time, or wall time where the queue has no timestamps.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn run(&self) -> Result<Duration, EngineError> {
         let start = Instant::now();
         let took = self.host.try_submit_timed(|commands| {
@@ -182,9 +170,6 @@ impl<R: Pod, C: Pod> ListPass<R, C> {
     }
 
     /// What the last run wrote.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn results(&self) -> Result<Vec<R>, EngineError> {
         Ok(self.results.download()?)
     }

@@ -107,9 +107,6 @@ impl<'a> SceneRenderer<'a> {
 
     /// Finds the surface at each pixel, and writes the emission that the camera sees. GPU time, where the
     /// queue has timestamps.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn visibility(&mut self) -> Result<Option<Duration>, EngineError> {
         let pass = self.engine.pass(&VISIBILITY, &[], &self.bound_to(&VISIBILITY, &[]))?;
         let took = self.engine.host().try_submit_timed(|commands| {
@@ -155,9 +152,6 @@ impl<'a> SceneRenderer<'a> {
 
     /// As [`SceneRenderer::shade`], with everything that a pass can be told: positions come from an image of
     /// ours, and radiance is added to one.
-    ///
-    /// # Errors
-    /// As [`SceneRenderer::shade`].
     pub fn shade_as(&mut self, options: ShadeOptions) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
         let pass = self.engine.shade_pass(self.seen(options))?;
@@ -195,9 +189,6 @@ impl<'a> SceneRenderer<'a> {
 
     /// As [`SceneRenderer::shade`], by another kernel of the shade kernel's bindings and push constants: one
     /// to compare with.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn shade_by(
         &mut self,
         kernel: &'static Kernel,
@@ -215,9 +206,6 @@ impl<'a> SceneRenderer<'a> {
 
     /// Adds the light that surfaces reflect, by Monte Carlo samples of the true BRDF. `progress` is told how
     /// many samples are done. GPU time, where the queue has timestamps.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn reference(
         &mut self,
         reference: Reference,
@@ -280,9 +268,6 @@ impl<'a> SceneRenderer<'a> {
     }
 
     /// The radiance image: rgb, and in w whether there is a surface; rows from the top.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn radiance(&mut self) -> Result<Vec<Vec4>, EngineError> {
         self.ensure_visible()?;
         let texels: Vec<[f32; 4]> = self.g_buffer.radiance.download(Usage::COMPUTE_WRITE)?;

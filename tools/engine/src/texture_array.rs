@@ -34,9 +34,6 @@ pub struct TextureSource {
 
 impl TextureArray {
     /// Black textures.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device has no such textures, or memory is out.
     pub fn new(passes: &Passes, size: PyramidSize, layers: u32) -> Result<Self, EngineError> {
         let host = passes.host();
         // SAFETY: Dropped with this value, which holds the host and waits for its submissions.
@@ -75,9 +72,6 @@ impl TextureArray {
 
     /// Uploads images that are to replace the first layers. Those that have the same texels, in the same
     /// memory, are uploaded once: a model's lights show hundreds of parts of one image.
-    ///
-    /// # Errors
-    /// As [`TextureArray::source`].
     pub fn sources(&self, images: &[SourceImage<'_>]) -> Result<Vec<TextureSource>, EngineError> {
         let mut known: HashMap<_, Rc<Image>> = HashMap::new();
         let source = |(layer, image): (u32, &SourceImage<'_>)| {

@@ -106,9 +106,6 @@ impl Engine {
     }
 
     /// A level of a layer: [`PyramidSize::side`] texels a side, row after row.
-    ///
-    /// # Errors
-    /// [`EngineError::NoTextureLevel`] where it is not there; else memory is out.
     pub fn download_level(&self, layer: u32, level: u32) -> Result<Vec<[f32; 4]>, EngineError> {
         let (textures, side) = self.texture_level(layer, level)?;
         let texels = (side * side) as usize;

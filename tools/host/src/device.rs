@@ -204,9 +204,6 @@ impl Host {
     }
 
     /// Another allocator, for what owns memory of its own: all that was made with it goes before the host.
-    ///
-    /// # Errors
-    /// [`HostError::OutOfMemory`].
     pub fn allocator(&self) -> Result<Arc<Mutex<Allocator>>, HostError> {
         let made = new_allocator(self.instance(), self.physical_device(), self.device())?;
         Ok(Arc::new(Mutex::new(made)))

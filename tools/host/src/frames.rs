@@ -27,9 +27,6 @@ pub struct Frames {
 
 impl Frames {
     /// Makes [`FRAMES_IN_FLIGHT`] of each.
-    ///
-    /// # Errors
-    /// [`HostError::OutOfMemory`].
     pub fn new(host: &Host) -> Result<Self, HostError> {
         let device = host.device();
         let info = vk::CommandPoolCreateInfo::default()
@@ -62,9 +59,6 @@ impl Frames {
     }
 
     /// The same with the semaphores that `record` returns.
-    ///
-    /// # Errors
-    /// As [`Frames::submit`].
     pub fn submit_with<E: From<HostError>>(
         &mut self,
         record: impl FnOnce(usize, vk::CommandBuffer) -> Result<Semaphores, E>,
@@ -121,9 +115,6 @@ impl Frames {
     }
 
     /// Waits for every frame in flight.
-    ///
-    /// # Errors
-    /// [`HostError::DeviceLost`].
     pub fn wait(&self) -> Result<(), HostError> {
         let fences: Vec<_> = self.slots.iter().map(|(_, fence)| *fence).collect();
         // SAFETY: The fences are ours.

@@ -50,9 +50,6 @@ impl Host {
     }
 
     /// As [`Host::image`], with several samples a texel: 2, 4 or 8.
-    ///
-    /// # Errors
-    /// As [`Host::image`].
     pub fn multisampled_image(
         &self,
         description: &ImageDescription<'_>,
@@ -207,10 +204,6 @@ impl Image {
     }
 
     /// Replaces all texels, layer after layer, row after row, and leaves the image ready for `after`.
-    ///
-    /// # Errors
-    /// [`HostError::InvalidArgument`] where the items are not as many bytes as the image has, or this crate
-    /// does not know the format's size; whatever the copy meets.
     pub fn upload<T: Pod>(&self, items: &[T], after: Usage) -> Result<(), HostError> {
         let size = self.bytes()?;
         if size_of_val(items) as u64 != size {

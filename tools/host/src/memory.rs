@@ -125,9 +125,6 @@ impl Host {
     }
 
     /// Memory on the device for an image that is not this crate's.
-    ///
-    /// # Errors
-    /// [`HostError::OutOfMemory`].
     pub fn memory(&self, name: &str, requirements: vk::MemoryRequirements) -> Result<Memory, HostError> {
         Ok(Memory::new(self, self.allocate(name, requirements, Location::Device, false)?))
     }
@@ -202,9 +199,6 @@ impl Buffer {
     }
 
     /// Reads the whole buffer, after waiting for what was submitted.
-    ///
-    /// # Errors
-    /// [`HostError::InvalidArgument`] where its size is no multiple of an item's; whatever the copy meets.
     pub fn download<T: Pod>(&self) -> Result<Vec<T>, HostError> {
         let item = size_of::<T>() as u64;
         if item == 0 || !self.size.is_multiple_of(item) {

@@ -193,9 +193,6 @@ impl Swapchain {
 
     /// Shows an image when it is drawn. Whether its size still fits the window.
     ///
-    /// # Errors
-    /// As [`Swapchain::acquire`].
-    ///
     /// # Safety
     /// The frame that draws it was submitted, and leaves it in `PRESENT_SRC_KHR` layout.
     pub unsafe fn present(&self, index: u32) -> Result<bool, HostError> {

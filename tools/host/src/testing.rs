@@ -55,9 +55,6 @@ pub fn device_or_skip() -> Option<TestHost> {
 }
 
 /// As [`device_or_skip`], with the queue and the version of Vulkan of these options.
-///
-/// # Panics
-/// As [`device_or_skip`].
 pub fn device_of(options: &HostOptions) -> Option<TestHost> {
     let HostOptions { queue, newest_version, .. } = *options;
     let options = HostOptions { queue, newest_version, ..test_options(validation_asked_for()) };
@@ -78,18 +75,12 @@ fn validation_asked_for() -> Validation {
 }
 
 /// As [`device_or_skip`], validated in a way that the test insists on.
-///
-/// # Panics
-/// As [`device_or_skip`].
 pub fn device_with(validation: Validation) -> Option<TestHost> {
     let host = made_or_skip(Host::new(test_options(validation)))?;
     Some(TestHost { log: host.message_log(), host: Some(host) })
 }
 
 /// As [`device_or_skip`], with `VK_KHR_push_descriptor`. None where the device has none, too.
-///
-/// # Panics
-/// As [`device_or_skip`].
 pub fn device_with_push_descriptors() -> Option<TestHost> {
     let options = HostOptions { push_descriptors: true, ..test_options(validation_asked_for()) };
     let made = Host::new(options);

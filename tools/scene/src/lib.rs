@@ -29,6 +29,8 @@
 //! Positions are world positions in `f64`, in the file's unit of length (glTF: metres), right-handed, +Y up.
 //! [`SceneBuffers`] makes them `f32` relative to an origin.
 
+#![allow(clippy::missing_errors_doc, clippy::missing_panics_doc)] // what the types say
+
 #![forbid(unsafe_code)]
 
 mod accessor;

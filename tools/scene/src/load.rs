@@ -34,9 +34,6 @@ impl Scene {
     }
 
     /// As [`Scene::load`], with what the file leaves open.
-    ///
-    /// # Errors
-    /// As [`Scene::load`].
     pub fn load_with(path: impl AsRef<Path>, options: LoadOptions) -> Result<Self, SceneError> {
         let path = path.as_ref();
         let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
@@ -52,9 +49,6 @@ impl Scene {
     }
 
     /// As [`Scene::from_bytes`], with what the file leaves open.
-    ///
-    /// # Errors
-    /// As [`Scene::from_bytes`].
     pub fn from_bytes_with(bytes: &[u8], name: &str, options: LoadOptions) -> Result<Self, SceneError> {
         let document = Document::parse(bytes, name.to_owned(), None, options.memory)?;
         read(document, name.to_owned(), options)

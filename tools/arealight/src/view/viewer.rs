@@ -23,9 +23,6 @@ pub struct Engines {
 
 impl Engines {
     /// With what the yardstick for the scene needs.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device or its memory is too small.
     pub fn new(ours: Engine, scene: &Scene) -> Result<Self, EngineError> {
         // Yardsticks shade polygons of one colour
         let others = Effects::SHAPES | Effects::IMAGES;
@@ -183,9 +180,6 @@ impl<'a> Viewer<'a> {
     }
 
     /// Draws in another size from now on.
-    ///
-    /// # Errors
-    /// As [`Viewer::new`].
     #[cfg(feature = "view")]
     pub fn resize(&mut self, size: [u32; 2]) -> Result<(), EngineError> {
         if size == self.size {
@@ -196,9 +190,6 @@ impl<'a> Viewer<'a> {
     }
 
     /// Draws what the state asks for, and adds `samples` a pixel to the truth where that is a part of it.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails, or a moved lamp cannot be shaded.
     pub fn draw(&mut self, state: &State, samples: u32) -> Result<Shown<'_>, EngineError> {
         self.place(state)?;
         let seen = Seen { placed: self.placed.clone(), orbit: state.orbit, shadows: state.has_shadows() };

@@ -64,9 +64,6 @@ impl ShadowedView {
 
     /// What the last run's rays found: of each pixel the part of its light that arrives, the penumbra's
     /// width, 1 where there is light, and the number of rays.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn shadows(&self) -> Result<Vec<Vec4>, EngineError> {
         let texels: Vec<[u16; 4]> = self.shadows.download(Usage::COMPUTE_WRITE)?;
         let number = |bits| half::f16::from_bits(bits).to_f32();
@@ -74,9 +71,6 @@ impl ShadowedView {
     }
 
     /// The last run's radiance without shadows.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn unshadowed(&self) -> Result<Vec<Vec4>, EngineError> {
         let texels: Vec<[f32; 4]> = self.unshadowed.download(Usage::COMPUTE_WRITE)?;
         Ok(texels.into_iter().map(Vec4::from_array).collect())
@@ -197,9 +191,6 @@ impl SceneRenderer<'_> {
     }
 
     /// As [`SceneRenderer::shade`], with shadows, by the random numbers of `seed`.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn shade_shadowed(
         &mut self,
         view: &ShadowedView,
@@ -233,9 +224,6 @@ impl SceneRenderer<'_> {
 
     /// The first step of [`SceneRenderer::shade_shadowed`], as a submission of its own to tell its time
     /// apart: shades without shadows, and picks lights and lobes for the rays.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn shade_picking(&mut self, view: &ShadowedView, seed: u32) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
         self.submit_parts(self.shadowed_frame(seed).parts(self.most_pairs), |commands, part| {
@@ -249,9 +237,6 @@ impl SceneRenderer<'_> {
     }
 
     /// A step after it: a dispatch of the shadow pass.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn shadow_stage(
         &self,
         view: &ShadowedView,

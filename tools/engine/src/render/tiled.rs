@@ -113,9 +113,6 @@ impl TileLists {
 
 impl TiledView {
     /// The lists that the last run wrote.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn lists(&self) -> Result<TileLists, EngineError> {
         let classes = self.found_before.borrow().clone();
         let words = self.tile_lists.download()?;
@@ -130,9 +127,6 @@ impl TiledView {
     }
 
     /// What the last run found, of a frame of so many lights of all kinds.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn counts(&self, light_count: usize) -> Result<TileCounts, EngineError> {
         let lists = self.lists()?;
         let listed = [TileClass::Quads, TileClass::Any].into_iter().flat_map(|class| lists.tiles_of(class));
@@ -149,9 +143,6 @@ impl SceneRenderer<'_> {
     ///
     /// # Errors
     /// [`EngineError`] says why the device fails.
-    ///
-    /// # Panics
-    /// Never: the pass was made with tiles.
     pub fn tiled(&self, options: ShadeOptions, tiles: TileOptions) -> Result<TiledView, EngineError> {
         let engine = self.engine;
         let host = engine.host();
@@ -187,9 +178,6 @@ impl SceneRenderer<'_> {
     }
 
     /// As [`SceneRenderer::shade`], by tiles.
-    ///
-    /// # Errors
-    /// [`EngineError`] where the device fails.
     pub fn shade_tiled(&mut self, view: &TiledView) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
         let (_, frame) = self.tiled_run(view);

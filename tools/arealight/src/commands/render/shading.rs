@@ -51,9 +51,6 @@ impl Outcome {
 }
 
 /// Renders a scene, a band of rows after the other.
-///
-/// # Errors
-/// What the device cannot do.
 pub fn render(
     engine: &Engine,
     scene: &Scene,
