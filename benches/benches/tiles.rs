@@ -1,30 +1,25 @@
-//! What tiles gain: whole frames of our scenes; a floor under 10 to 1,000 lamps of which those that
-//! contribute little are culled; the same under disks and spheres, and images on disks:
-//! `cargo bench -p arealight-benches --bench tiles`, with `-- scenes`, `-- lamps` or `-- shapes` these alone.
-//! Prints Markdown tables.
+//! What tiles gain: whole frames of our scenes; a floor under disks and spheres, and images on disks:
+//! `cargo bench -p arealight-benches --bench tiles`, with `-- scenes` or `-- shapes` these alone. Prints
+//! Markdown tables. Ever more lamps are of `arealight bench lights`.
 
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{Footprint, LightTexture, Quality};
 use arealight_benches::pictures;
 use arealight_benches::start::start;
-use arealight_benches::tiles::{Baseline, TiledFrame, disks, floor, lamps, markdown, measure, round_lamps};
+use arealight_benches::tiles::{Baseline, TiledFrame, disks, floor, markdown, measure, round_lamps};
 use arealight_engine::{Engine, SceneRenderer};
 use arealight_oracle::texture::Texture;
 use arealight_scene::{Scene, SceneBuffers};
 use glam::{DVec3, Vec3};
 use std::error::Error;
-use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
 const ROUNDS: usize = 20;
 const SIZE: [u32; 2] = [640, 360];
 
-/// The size of the floor's picture: as tiles get smaller, bounds get sharper.
-const FLOOR_SIZE: [u32; 2] = [1280, 720];
-
 /// Its width over its height.
-const ASPECT: f64 = FLOOR_SIZE[0] as f64 / FLOOR_SIZE[1] as f64;
+const ASPECT: f64 = SIZE[0] as f64 / SIZE[1] as f64;
 
 /// The side of the floor in metres.
 const FLOOR: f64 = 40.0;
@@ -32,11 +27,8 @@ const FLOOR: f64 = 40.0;
 /// What fraction of a pixel may be culled over the floor.
 const THRESHOLDS: [f32; 2] = [0.01, 0.1];
 
-/// What the floor is made of: a name, and a roughness.
-const FLOORS: [(&str, f32); 2] = [("concrete", 0.9), ("satin", 0.5)];
-
-/// How many lamps there are over it.
-const LAMPS: [usize; 3] = [10, 100, 1000];
+/// The floor's roughness: concrete.
+const ROUGHNESS: f32 = 0.9;
 
 /// How many disks or spheres there are over it.
 const ROUND_LAMPS: [usize; 2] = [10, 100];
@@ -73,7 +65,7 @@ fn shape_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<d
     for (kind, are_spheres) in [("disks", false), ("spheres", true)] {
         for cull_threshold in THRESHOLDS {
             for count in ROUND_LAMPS {
-                let mut scene = floor(FLOORS[0].1, FLOOR, ASPECT);
+                let mut scene = floor(ROUGHNESS, FLOOR, ASPECT);
                 scene.lights = round_lamps(count, FLOOR, are_spheres);
                 let against = (TileOptions { cull_threshold, ..TileOptions::default() }, Baseline::Exact);
                 let name = format!("{count} {kind}, threshold {cull_threshold}");
@@ -87,7 +79,7 @@ fn shape_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<d
 /// Frames of textured disks, by one fetch and by four.
 fn image_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<dyn Error>> {
     let mut frames = vec![];
-    let mut scene = floor(FLOORS[0].1, FLOOR, ASPECT);
+    let mut scene = floor(ROUGHNESS, FLOOR, ASPECT);
     scene.lights = disks(DISKS, 0.5 * FLOOR, DISK_HEIGHT, DVec3::ZERO);
     let texture = Some(LightTexture { layer: 0, uvs: vec![] });
     scene.lights.iter_mut().for_each(|disk| disk.texture.clone_from(&texture));
@@ -114,53 +106,16 @@ fn scene_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<d
     Ok(frames)
 }
 
-/// Frames of floors under lamps, and a word of how time grows with their number.
-fn lamp_frames(engine: &Engine, rounds: usize) -> Result<(Vec<TiledFrame>, String), Box<dyn Error>> {
-    let (mut frames, mut growth) = (vec![], String::new());
-    for (material, roughness) in FLOORS {
-        for cull_threshold in THRESHOLDS {
-            let first = frames.len();
-            for count in LAMPS {
-                let against = (
-                    TileOptions { cull_threshold, capacity: 512, ..TileOptions::default() },
-                    Baseline::Clipless,
-                );
-                let mut scene = floor(roughness, FLOOR, ASPECT);
-                scene.lights = lamps(count, FLOOR, DVec3::ZERO);
-                let rounds = rounds.div_ceil(if count > 100 { 10 } else { 4 });
-                let name = format!("{material}, {count} lamps, threshold {cull_threshold}");
-                frames.push(frame(engine, (&name, &scene), FLOOR_SIZE, Quality::default(), against, rounds)?);
-            }
-            let ten = frames[first].milliseconds[2].median;
-            for (count, frame) in LAMPS.iter().zip(&frames[first..]) {
-                let times = frame.milliseconds[2].median / ten;
-                let _ = writeln!(
-                    growth,
-                    "- {material}, threshold {cull_threshold}: {count} lamps take {times:.1} times as long \
-                    as {}",
-                    LAMPS[0]
-                );
-            }
-        }
-    }
-    Ok((frames, growth))
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     let Some((host, rounds)) = start(ROUNDS) else { return Ok(()) };
     let mut engine = Engine::new(host, &arealight::LightTable::ggx(), arealight_vk::TableFormat::default())?;
     let device = engine.host().device_name();
     println!("{device}, {rounds} rounds\n");
     let named = |part: &str| std::env::args().any(|argument| argument == part);
-    let wanted = |part: &str| named(part) || !(named("scenes") || named("shapes") || named("lamps"));
+    let wanted = |part: &str| named(part) || !(named("scenes") || named("shapes"));
     if wanted("scenes") {
         println!("## Scenes, {} x {}\n", SIZE[0], SIZE[1]);
         println!("{}", markdown(&scene_frames(&engine, rounds)?));
-    }
-    if wanted("lamps") {
-        println!("## A floor under lamps, {} x {}\n", FLOOR_SIZE[0], FLOOR_SIZE[1]);
-        let (frames, growth) = lamp_frames(&engine, rounds)?;
-        println!("{}\n{growth}", markdown(&frames));
     }
     if wanted("shapes") {
         println!("## A floor under disks and spheres, {} x {}\n", SIZE[0], SIZE[1]);

@@ -3,6 +3,7 @@
 //! The machines that this runs on are shared: every method is run in turn, round after round, and read as a
 //! ratio to a yardstick in the same round. All read the same quads, once each.
 
+use crate::ladder::Spread;
 use crate::school::School;
 use crate::table::Table;
 use arealight::FormFactor;
@@ -10,6 +11,7 @@ use arealight::kernels::Kernel;
 use arealight_engine::host::Host;
 use arealight_engine::{EngineError, ListPass, Passes};
 use arealight_vk::Resource;
+use bytemuck::Pod;
 use serde::Serialize;
 
 /// A quad's form factor many times over.
@@ -67,10 +69,8 @@ pub struct Cost {
     pub method: &'static str,
     /// Nanoseconds a form factor: the median over the rounds. Only ratios mean something on a shared machine.
     pub nanoseconds: f64,
-    /// The median over the rounds of the ratio to the first method, [`School::Clipless`], in the same round.
-    pub ratio: f64,
-    /// The quartiles of that ratio.
-    pub quartiles: [f64; 2],
+    /// The ratio to the first method, [`School::Clipless`], in the same round.
+    pub ratio: Spread,
     /// The mean form factor of the quads: what was computed.
     pub mean: f64,
 }
@@ -78,44 +78,45 @@ pub struct Cost {
 const WORK_ITEMS: usize = 4096;
 const REPEATS: u32 = 256;
 
-struct Run {
-    list: ListPass<f32, ()>,
-    seconds: Vec<f64>,
+/// Runs a list of each method in turn, `rounds` times after a round that warms up: the seconds of each.
+pub(crate) fn in_turn<R: Pod, C: Pod>(
+    lists: &[ListPass<R, C>],
+    rounds: usize,
+) -> Result<Vec<Vec<f64>>, EngineError> {
+    let mut seconds = vec![vec![]; lists.len()];
+    for round in 0..=rounds {
+        for (list, seconds) in lists.iter().zip(&mut seconds) {
+            let took = list.run()?.as_secs_f64();
+            if round > 0 {
+                seconds.push(took);
+            }
+        }
+    }
+    Ok(seconds)
 }
 
 /// Measures every method in `rounds` rounds, after one that warms up.
 pub fn measure(host: &Host, rounds: usize) -> Result<Vec<Cost>, EngineError> {
     let passes = Passes::new(host.clone())?;
     let vertices = host.storage_buffer("vertices", &quads())?;
-    let mut runs = Vec::new();
-    for method in METHODS {
+    let list = |method: &CostMethod| {
         let kernel = (&FORM_FACTOR_COST, &[(0, method.id), (1, REPEATS)][..]);
         let inputs = [Resource::buffer(vertices.handle())];
         // SAFETY: The vertices live until this returns.
-        let list = unsafe { passes.over_list(kernel, &inputs, (), WORK_ITEMS) }?;
-        runs.push(Run { list, seconds: vec![] });
-    }
-    for round in 0..=rounds {
-        for run in &mut runs {
-            let seconds = run.list.run()?.as_secs_f64();
-            if round > 0 {
-                run.seconds.push(seconds);
-            }
-        }
-    }
-    let yardstick = runs[0].seconds.clone();
-    let cost = |(method, run): (&CostMethod, &Run)| {
-        let ratios: Vec<f64> = run.seconds.iter().zip(&yardstick).map(|(a, b)| a / b).collect();
-        let means = run.list.results()?;
+        unsafe { passes.over_list::<f32, ()>(kernel, &inputs, (), WORK_ITEMS) }
+    };
+    let lists = METHODS.iter().map(list).collect::<Result<Vec<_>, _>>()?;
+    let seconds = in_turn(&lists, rounds)?;
+    let cost = |((method, list), taken): ((&CostMethod, &ListPass<f32, ()>), &Vec<f64>)| {
+        let means = list.results()?;
         Ok(Cost {
             method: method.name,
-            nanoseconds: quantile(&run.seconds, 0.5) * 1e9 / (WORK_ITEMS as f64 * f64::from(REPEATS)),
-            ratio: quantile(&ratios, 0.5),
-            quartiles: [quantile(&ratios, 0.25), quantile(&ratios, 0.75)],
+            nanoseconds: quantile(taken, 0.5) * 1e9 / (WORK_ITEMS as f64 * f64::from(REPEATS)),
+            ratio: Spread::of_ratios(taken, &seconds[0]),
             mean: means.iter().map(|mean| f64::from(*mean)).sum::<f64>() / WORK_ITEMS as f64,
         })
     };
-    METHODS.iter().zip(&runs).map(cost).collect()
+    METHODS.iter().zip(&lists).zip(&seconds).map(cost).collect()
 }
 
 pub(crate) fn quantile(values: &[f64], part: f64) -> f64 {
@@ -150,9 +151,7 @@ fn quads() -> Vec<[f32; 4]> {
 /// The costs as a Markdown table.
 pub fn markdown(costs: &[Cost]) -> String {
     let row = |(cost, method): (&Cost, &CostMethod)| {
-        let [low, high] = cost.quartiles;
-        let times = [format!("{:.2}", cost.ratio), format!("{low:.2} to {high:.2}")];
-        [cost.method, method.promise].map(str::to_owned).into_iter().chain(times).collect()
+        [cost.method, method.promise].map(str::to_owned).into_iter().chain(cost.ratio.cells()).collect()
     };
     let heads = ["form factor of a quad", "error promised", "time, clipless = 1", "quartiles"];
     Table::new(&heads, costs.iter().zip(METHODS).map(row)).to_markdown()

@@ -9,7 +9,6 @@ mod names;
 mod pictures;
 mod points;
 mod reference;
-mod scaling;
 mod text;
 mod timing;
 
@@ -19,7 +18,6 @@ pub use methods::{BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT, SHADE_
 pub use names::LevelNames;
 pub use pictures::{Picture, Pictures, STEPS_BESIDE_THE_TRUTH, View, beside_the_truth, yardstick_for};
 pub use reference::{PictureError, Reference};
-pub use scaling::{Growth, Scaling};
 pub use text::{READS, error_cells, number, percent};
 pub use timing::{Spread, Time};
 
@@ -66,7 +64,7 @@ impl Options {
         // Each session makes every pipeline, and warms up
         let timed = methods + Effects::all().iter().count() + TIMED_SAMPLES.len();
         let sessions = shares(self.rounds).count() + 1;
-        let long = methods + sessions * (timed + 1) + self.rounds + scaling::STEPS + pictures::STEPS;
+        let long = methods + sessions * (timed + 1) + self.rounds + pictures::STEPS;
         points as u64 + LONG * long as u64
     }
 
@@ -156,8 +154,6 @@ pub struct Ladder {
     pub monte_carlo: Vec<Samples>,
     /// What effects add.
     pub effects: Vec<EffectCost>,
-    /// Growth.
-    pub scaling: Scaling,
     /// Names of the lights, with what they are.
     pub workloads: Vec<(String, String)>,
 }
@@ -235,7 +231,6 @@ pub fn run(
     let monte_carlo = with_time(monte_carlo, &times);
     let rows = rows.into_iter().map(|row| with_samples(row, &monte_carlo)).collect();
 
-    let scaling = scaling::measure(&engine, options.rounds.div_ceil(3), progress)?;
     let pictures = pictures::make(&engine, table, scene, options.reference, progress)?;
     let ladder = Ladder {
         device: host.device_name(),
@@ -249,7 +244,6 @@ pub fn run(
         rows,
         monte_carlo,
         effects,
-        scaling,
         workloads: workloads.iter().map(|w| (w.name.to_owned(), w.description.to_owned())).collect(),
     };
     Ok((ladder, pictures))

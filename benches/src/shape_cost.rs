@@ -4,7 +4,8 @@
 //! As in [`crate::cost`] every method runs in turn, round after round, and is read as a ratio to one of them
 //! in the same round: here to a disk, exactly.
 
-use crate::cost::quantile;
+use crate::cost::in_turn;
+use crate::ladder::Spread;
 use crate::shapes::{SHAPES, ShapeArguments, ShapeFunction, ellipse_arguments, tube_arguments};
 use crate::table::Table;
 use arealight_cases::hard::ellipse::Family;
@@ -73,10 +74,8 @@ const METHODS: &[ShapeMethod] = &[
 pub struct ShapeCost {
     /// The method.
     pub method: &'static str,
-    /// The median over the rounds of the ratio to the exact disk in the same round.
-    pub ratio: f64,
-    /// The quartiles of that ratio.
-    pub quartiles: [f64; 2],
+    /// The ratio to the exact disk in the same round.
+    pub ratio: Spread,
     /// The root of the mean square and the largest of the errors that are finite, and how many are not: of
     /// ways to a disk.
     pub error: Option<ShapeError>,
@@ -122,65 +121,51 @@ fn arguments(kind: Kind) -> Vec<ShapeArguments> {
     disks().iter().map(of_disk).collect()
 }
 
-struct Run {
-    list: ListPass<[f32; 4], u32>,
-    seconds: Vec<f64>,
-    _inputs: [Buffer; 2],
-}
+/// A method over its shapes, and what it reads.
+type List = (ListPass<[f32; 4], u32>, [Buffer; 2]);
 
-impl Run {
-    fn new(passes: &Passes, method: &ShapeMethod, repeats: u32) -> Result<Self, EngineError> {
-        let host = passes.host();
-        let ends = if let Kind::Tube(ends) = method.kind { ends as u32 } else { 0 };
-        let inputs = [
-            host.storage_buffer("arguments", &arguments(method.kind))?,
-            host.storage_buffer("ends", &[ends; WORK_ITEMS])?,
-        ];
-        let constants = [(0, method.function as u32), (1, method.level), (2, method.choice), (3, repeats)];
-        let resources = [&inputs[0], &inputs[1]].map(|buffer| Resource::buffer(buffer.handle()));
-        // SAFETY: This keeps the inputs.
-        let list =
-            unsafe { passes.over_list((&SHAPES, &constants), &resources, WORK_ITEMS as u32, WORK_ITEMS) }?;
-        Ok(Self { list, seconds: Vec::new(), _inputs: inputs })
-    }
+/// Makes a method's list.
+fn list(
+    passes: &Passes,
+    method: &ShapeMethod,
+    repeats: u32,
+) -> Result<List, EngineError> {
+    let host = passes.host();
+    let ends = if let Kind::Tube(ends) = method.kind { ends as u32 } else { 0 };
+    let inputs = [
+        host.storage_buffer("arguments", &arguments(method.kind))?,
+        host.storage_buffer("ends", &[ends; WORK_ITEMS])?,
+    ];
+    let constants = [(0, method.function as u32), (1, method.level), (2, method.choice), (3, repeats)];
+    let resources = inputs.each_ref().map(|buffer| Resource::buffer(buffer.handle()));
+    // SAFETY: The inputs are returned with it.
+    let list = unsafe { passes.over_list((&SHAPES, &constants), &resources, WORK_ITEMS as u32, WORK_ITEMS) }?;
+    Ok((list, inputs))
 }
 
 /// Measures every method in `rounds` rounds, after one that warms up.
 pub fn measure(host: &Host, rounds: usize) -> Result<Vec<ShapeCost>, EngineError> {
     let passes = Passes::new(host.clone())?;
-    let mut runs =
-        METHODS.iter().map(|method| Run::new(&passes, method, REPEATS)).collect::<Result<Vec<_>, _>>()?;
-    for round in 0..=rounds {
-        for run in &mut runs {
-            let seconds = run.list.run()?.as_secs_f64();
-            if round > 0 {
-                run.seconds.push(seconds);
-            }
-        }
-    }
-    let exact = runs[0].seconds.clone();
+    let made = METHODS.iter().map(|method| list(&passes, method, REPEATS)).collect::<Result<Vec<_>, _>>()?;
+    let (lists, _inputs): (Vec<_>, Vec<_>) = made.into_iter().unzip();
+    let seconds = in_turn(&lists, rounds)?;
     let truth: Vec<f64> = disks().iter().map(|disk| form_factor(disk).abs()).collect();
-    let cost = |(method, run): (&ShapeMethod, &Run)| {
-        let ratios: Vec<f64> = run.seconds.iter().zip(&exact).map(|(a, b)| a / b).collect();
-        let error = match method.kind {
-            Kind::JudgedDisk => Some(error(&passes, method, &truth)?),
-            _ => None,
-        };
+    let cost = |(method, taken): (&ShapeMethod, &Vec<f64>)| {
+        let is_judged = method.kind == Kind::JudgedDisk;
         Ok(ShapeCost {
             method: method.name,
-            ratio: quantile(&ratios, 0.5),
-            quartiles: [quantile(&ratios, 0.25), quantile(&ratios, 0.75)],
-            error,
+            ratio: Spread::of_ratios(taken, &seconds[0]),
+            error: is_judged.then(|| error(&passes, method, &truth)).transpose()?,
         })
     };
-    METHODS.iter().zip(&runs).map(cost).collect()
+    METHODS.iter().zip(&seconds).map(cost).collect()
 }
 
 /// The errors of a method, evaluated once a disk.
 fn error(passes: &Passes, method: &ShapeMethod, truth: &[f64]) -> Result<ShapeError, EngineError> {
-    let run = Run::new(passes, method, 1)?;
-    run.list.run()?;
-    let results = run.list.results()?;
+    let (list, _inputs) = list(passes, method, 1)?;
+    list.run()?;
+    let results = list.results()?;
     let errors: Vec<f64> =
         results.iter().zip(truth).map(|(found, truth)| (f64::from(found[0]) - truth).abs()).collect();
     let finite = || errors.iter().filter(|error| error.is_finite());
@@ -194,7 +179,6 @@ fn error(passes: &Passes, method: &ShapeMethod, truth: &[f64]) -> Result<ShapeEr
 /// The costs as a Markdown table.
 pub fn markdown(costs: &[ShapeCost]) -> String {
     let row = |cost: &ShapeCost| {
-        let [low, high] = cost.quartiles;
         let errors = cost.error.map_or_else(Default::default, |error| {
             let not_finite = match error.not_finite {
                 0 => String::new(),
@@ -202,8 +186,7 @@ pub fn markdown(costs: &[ShapeCost]) -> String {
             };
             [format!("{:.0e}", error.rms), format!("{:.0e}{not_finite}", error.largest)]
         });
-        let times = [format!("{:.2}", cost.ratio), format!("{low:.2} to {high:.2}")];
-        std::iter::once(cost.method.to_owned()).chain(times).chain(errors).collect()
+        std::iter::once(cost.method.to_owned()).chain(cost.ratio.cells()).chain(errors).collect()
     };
     let heads = ["form factor", "time, exact disk = 1", "quartiles", "RMS error", "largest error"];
     Table::new(&heads, costs.iter().map(row)).to_markdown()

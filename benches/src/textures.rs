@@ -4,6 +4,7 @@
 //! threads: on a shared machine the clock tells who else is there, and more so in the longer run.
 
 use crate::cost::quantile;
+use crate::ladder::Spread;
 use crate::table::Table;
 use arealight::kernels::Kernel;
 use arealight::{PyramidSize, TexturePart};
@@ -29,10 +30,8 @@ pub struct TextureCost {
     pub side: u32,
     /// Milliseconds of the mips, and of the pyramid.
     pub milliseconds: [f64; 2],
-    /// The median of the rounds' ratios, pyramid to mips.
-    pub ratio: f64,
-    /// Its quartiles.
-    pub quartiles: [f64; 2],
+    /// The rounds' ratios, pyramid to mips.
+    pub ratio: Spread,
     /// Bytes of a layer, as a ratio to those of the source in the same format.
     pub memory: f64,
 }
@@ -116,12 +115,10 @@ pub fn measure(host: &Host, side: u32, rounds: usize) -> Result<TextureCost, Eng
             seconds[1].push(pyramid);
         }
     }
-    let ratios: Vec<f64> = seconds[1].iter().zip(&seconds[0]).map(|(pyramid, mips)| pyramid / mips).collect();
     Ok(TextureCost {
         side,
         milliseconds: [0, 1].map(|i| 1e3 * quantile(&seconds[i], 0.5)),
-        ratio: quantile(&ratios, 0.5),
-        quartiles: [quantile(&ratios, 0.25), quantile(&ratios, 0.75)],
+        ratio: Spread::of_ratios(&seconds[1], &seconds[0]),
         memory: size.texels() as f64 / f64::from(side).powi(2),
     })
 }
@@ -175,13 +172,14 @@ fn processor_seconds() -> Option<f64> {
 pub fn markdown(costs: &[TextureCost]) -> String {
     let row = |cost: &TextureCost| {
         let [mips, pyramid] = cost.milliseconds.map(|time| time * 1e6 / f64::from(cost.side).powi(2));
-        let ([low, high], side) = (cost.quartiles, cost.side);
+        let ([ratio, quartiles], side) = (cost.ratio.cells(), cost.side);
+        let size = format!("{side} x {side}");
         vec![
-            format!("{side} x {side}"),
+            size,
             format!("{mips:.1}"),
             format!("{pyramid:.1}"),
-            format!("{:.2}", cost.ratio),
-            format!("{low:.2} to {high:.2}"),
+            ratio,
+            quartiles,
             format!("{:.2}", cost.memory),
         ]
     };

@@ -107,16 +107,12 @@ pub fn measure(
     let without = renderer.radiance()?;
     // On a software device seconds are of all its processors
     let processors = if is_software(host) { crate::ladder::frame::processors() } else { 1.0 };
-    let ratio = |method: usize| {
-        let ratios: Vec<f64> = seconds[method].iter().zip(&seconds[0]).map(|(a, b)| a / b).collect();
-        Spread::of(&ratios)
-    };
     Ok(TiledFrame {
         name: name.to_owned(),
         lights,
         baseline,
         milliseconds: [0, 1, 2].map(|method: usize| Spread::of(&seconds[method]).times(1e3 / processors)),
-        ratios: [0, 1, 2].map(ratio),
+        ratios: [0, 1, 2].map(|method: usize| Spread::of_ratios(&seconds[method], &seconds[0])),
         counts: view.counts(lights)?,
         error: difference(&without, &by_tiles),
     })
@@ -167,58 +163,45 @@ fn grid(count: usize, side: f64) -> (f64, impl Iterator<Item = DVec3>) {
     (step, (0..count).map(move |index| DVec3::new(place(index % columns), 0.0, place(index / columns))))
 }
 
-/// Square lamps over a floor of `side` metres about `center`, which lies in y, as many as a square holds; so
-/// high as half of what is between them.
+/// Square lamps that face down over a floor of `side` metres about `center`, which lies in y, as many as a
+/// square holds; so high as half of what is between them.
 pub fn lamps(count: usize, side: f64, center: DVec3) -> Vec<Light> {
-    let (step, places) = grid(count, side);
-    let lamp = |(index, place): (usize, DVec3)| {
-        let at = center + place.with_y(0.5 * step);
-        let half = 0.1 * step;
-        // Its front is down
-        let corner = |x: f64, z: f64| at + DVec3::new(x * half, 0.0, z * half);
-        Light {
-            name: format!("lamp {index}"),
-            radiance: Vec3::splat(10.0),
-            shape: LightShape::Polygon(vec![
-                corner(-1.0, -1.0),
-                corner(1.0, -1.0),
-                corner(1.0, 1.0),
-                corner(-1.0, 1.0),
-            ]),
-            ..Light::default()
-        }
-    };
-    places.enumerate().map(lamp).collect()
+    over_floor(count, side, |step, place| {
+        let (at, half) = (center + place.with_y(0.5 * step), 0.1 * step);
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corner = |(x, z): (f64, f64)| at + DVec3::new(x * half, 0.0, z * half);
+        LightShape::Polygon(corners.map(corner).to_vec())
+    })
 }
 
 /// As [`lamps`], of disks that face down, or of spheres.
 pub fn round_lamps(count: usize, side: f64, are_spheres: bool) -> Vec<Light> {
-    let (step, places) = grid(count, side);
-    let lamp = |(index, place): (usize, DVec3)| {
+    over_floor(count, side, |step, place| {
         let (center, radius) = (place.with_y(0.5 * step), 0.1 * step);
-        // x cross z is down
-        let disk = LightShape::Disk { center, axis_u: DVec3::X * radius, axis_v: DVec3::Z * radius };
-        Light {
-            name: format!("lamp {index}"),
-            radiance: Vec3::splat(10.0),
-            shape: if are_spheres { LightShape::Sphere { center, radius } } else { disk },
-            ..Light::default()
-        }
-    };
-    places.enumerate().map(lamp).collect()
+        if are_spheres { LightShape::Sphere { center, radius } } else { disk(center, radius) }
+    })
 }
 
 /// Disks that face down to `center` from `height` above it, side by side as many as a square of `side` holds.
 pub fn disks(count: usize, side: f64, height: f64, center: DVec3) -> Vec<Light> {
+    over_floor(count, side, |step, place| disk(center + place.with_y(height), 0.4 * step))
+}
+
+/// A disk that faces down: x cross z is down.
+fn disk(center: DVec3, radius: f64) -> LightShape {
+    LightShape::Disk { center, axis_u: DVec3::X * radius, axis_v: DVec3::Z * radius }
+}
+
+/// Lights over the squares of a [`grid`]: each of a shape by the square's side and middle.
+fn over_floor(count: usize, side: f64, shape: impl Fn(f64, DVec3) -> LightShape) -> Vec<Light> {
     let (step, places) = grid(count, side);
-    let disk = |(index, place): (usize, DVec3)| {
-        let center = center + place.with_y(height);
-        let radius = 0.4 * step;
-        // x cross z is down
-        let shape = LightShape::Disk { center, axis_u: DVec3::X * radius, axis_v: DVec3::Z * radius };
-        Light { name: format!("disk {index}"), radiance: Vec3::splat(10.0), shape, ..Light::default() }
+    let light = |(index, place): (usize, DVec3)| Light {
+        name: format!("lamp {index}"),
+        radiance: Vec3::splat(10.0),
+        shape: shape(step, place),
+        ..Light::default()
     };
-    places.enumerate().map(disk).collect()
+    places.enumerate().map(light).collect()
 }
 
 /// Frames as a Markdown table, all of them held against the same.
@@ -238,13 +221,14 @@ pub fn markdown(frames: &[TiledFrame]) -> String {
     ];
     let row = |frame: &TiledFrame| {
         let [_, exact, tiles] = &frame.ratios;
+        let [by_tiles, quartiles] = tiles.cells();
         vec![
             frame.name.clone(),
             frame.lights.to_string(),
             format!("{:.2}", frame.milliseconds[0].median),
             format!("{:.2}", exact.median),
-            format!("{:.2}", tiles.median),
-            format!("{:.2} to {:.2}", tiles.quartiles[0], tiles.quartiles[1]),
+            by_tiles,
+            quartiles,
             format!("{:.1}", frame.counts.lights_per_tile()),
             format!("{:.1e}", frame.error[0]),
             format!("{:.1e}", frame.error[1]),

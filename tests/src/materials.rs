@@ -1,11 +1,16 @@
 //! What the tests of materials share: shading points, and comparisons with the float64 twins.
 
+use crate::one_pixel::{LAYOUTS, OnePixel, under_lamp};
 use crate::{Comparison, Random, TestEngine, point};
-use arealight::{Horizon, Light, LightShape, LightTable, Lobes, Quality, SpecularLobes, TubeEnds};
+use arealight::plan::GBufferLayout;
+use arealight::{
+    Effects, Horizon, Light, LightShape, LightTable, Lobes, Plane, Quality, SpecularLobes, TubeEnds,
+};
 use arealight_engine::EvalPoint;
 use arealight_oracle::material::Surface;
 use arealight_oracle::shading::{RelativeLight, ltc_on, shape_ltc_on};
-use glam::{DVec3, Vec3};
+use arealight_vk::ash::vk::Format;
+use glam::{DVec3, Vec3, Vec4};
 use std::sync::LazyLock;
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
@@ -31,8 +36,38 @@ pub fn under_polygon(random: &mut Random, index: usize, surface: Surface, view: 
     point(surface, view, vertices, index.is_multiple_of(3))
 }
 
+/// Points under polygons anywhere of surfaces that a function draws, each seen at a cosine from `least` on.
+pub fn points_of(
+    seed: u64,
+    count: usize,
+    least: f64,
+    mut surface: impl FnMut(&mut Random, usize) -> Surface,
+) -> Vec<EvalPoint> {
+    let mut random = Random::new(seed);
+    let one = |index| {
+        let surface = surface(&mut random, index);
+        let cos_view = random.between(least, 1.0);
+        let view = DVec3::new((1.0 - cos_view * cos_view).sqrt(), 0.0, cos_view);
+        under_polygon(&mut random, index, surface, view)
+    };
+    (0..count).map(one).collect()
+}
+
+/// The same points under [`shape_lights`].
+pub fn under_shapes(seed: u64, points: impl IntoIterator<Item = EvalPoint>) -> Vec<EvalPoint> {
+    let mut random = Random::new(seed);
+    let under =
+        |point: EvalPoint| shape_lights(&mut random).map(|light| EvalPoint { light, ..point.clone() });
+    points.into_iter().flat_map(under).collect()
+}
+
+/// The points with their surfaces changed.
+pub fn changed(points: &[EvalPoint], change: impl Fn(&Surface) -> Surface) -> Vec<EvalPoint> {
+    points.iter().map(|point| EvalPoint { surface: change(&point.surface), ..point.clone() }).collect()
+}
+
 /// A disk, a sphere and a tube about as large as they are far.
-pub fn shape_lights(random: &mut Random) -> [Light; 3] {
+fn shape_lights(random: &mut Random) -> [Light; 3] {
     let center = random.direction() * 2.0;
     let (axis_u, axis_v) = center.normalize_or(DVec3::Z).any_orthonormal_pair();
     let light = |shape| Light { shape, radiance: Vec3::ONE, two_sided: true, ..Light::default() };
@@ -127,6 +162,50 @@ impl TestEngine {
             comparison.add_color(*answer, expected, bound(given), || format!("point {index}: {given:?}"));
         }
         comparison.assert_all();
+    }
+
+    /// Asserts that surfaces with a layer of no weight are those without it, to the bit. The twin: most with
+    /// the layer are not.
+    pub fn assert_none_to_the_bit(
+        &self,
+        qualities: &[Quality],
+        [weightless, without, with]: [&[EvalPoint]; 3],
+    ) {
+        for &quality in qualities {
+            let without = self.eval_bits(without, quality);
+            assert_eq!(self.eval_bits(weightless, quality), without, "{quality:?}");
+            let with = self.eval_bits(with, quality);
+            let same = with.iter().zip(&without).filter(|(with, without)| with == without).count();
+            assert!(same < with.len() / 2, "{quality:?}: {same} points are the same");
+        }
+    }
+
+    /// Asserts that every layout reads a plane where an effect needs it: texels that mean none change nothing,
+    /// and others do. In our own layout it shows what the surface at [`under_lamp`] does, within `bound`.
+    pub fn assert_plane(
+        &self,
+        (plane, effects): (Plane, Effects),
+        nones: &[[f32; 4]],
+        texels: &[[f32; 4]],
+        (surface, bound): (Surface, f32),
+    ) {
+        let shade = |layout, effects, texel: [f32; 4]| {
+            let mut pixel = OnePixel::new(self, Vec4::W, 1.0);
+            pixel.set(plane, Format::R32G32B32A32_SFLOAT, texel);
+            pixel.shade_under_lamp(layout, effects)
+        };
+        for layout in LAYOUTS {
+            let without = shade(layout, Effects::empty(), texels[0]);
+            for none in nones {
+                assert_eq!(shade(layout, effects, *none), without, "{plane:?}, {layout:?}: {none:?} is none");
+            }
+            for texel in texels {
+                assert_ne!(shade(layout, effects, *texel), without, "{plane:?}, {layout:?}: {texel:?}");
+            }
+        }
+        let expected = self.eval(&[under_lamp(surface)], Quality::default()).unwrap()[0];
+        let found = shade(GBufferLayout::Arealight, effects, texels[0]);
+        assert!((found - expected).abs().max_element() < bound, "{plane:?}: {found} and {expected}");
     }
 
     /// The answers' bits.

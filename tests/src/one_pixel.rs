@@ -1,12 +1,13 @@
 //! The shade pass over a G-buffer of one pixel.
 
 use crate::TestEngine;
+use crate::pass::{self, LightBuffers, image, planes, reads, run, store};
 use arealight::plan::{GBufferLayout, RadianceFormat, ShadeOptions};
-use arealight::{Effects, Light, LightShape, PackedLights, Plane, Planes};
+use arealight::{Effects, Light, LightShape, Plane, Planes};
 use arealight_engine::EvalPoint;
-use arealight_engine::host::{Image, ImageDescription, Usage};
+use arealight_engine::host::{Image, Usage};
 use arealight_oracle::material::{Material, Surface};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources};
+use arealight_vk::{Descriptors, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources};
 use ash::vk;
 use bytemuck::Pod;
 use glam::{DVec3, Mat4, Vec3, Vec4};
@@ -54,18 +55,14 @@ impl<'a> OnePixel<'a> {
     /// A grey, half rough, a quarter metallic surface without a coat that looks up, at `position` (w = 0:
     /// none), and what the depth buffer says of it.
     pub fn new(engine: &'a TestEngine, position: Vec4, depth: f32) -> Self {
-        let float = vk::Format::R32G32B32A32_SFLOAT;
-        let planes = Planes::from_fn(|plane| match plane {
-            Plane::Position => Some(position.to_array()),
-            Plane::Normal => Some([0.0, 0.0, 2.0, 0.5]),
-            Plane::BaseColor | Plane::Specular => Some([0.8, 0.6, 0.4, 0.25]),
-            Plane::Stencil => None,
-            _ => Some([0.0; 4]),
-        });
         Self {
             engine,
-            planes: Planes::from_fn(|plane| {
-                planes[plane].map(|texel: [f32; 4]| sampled(engine, float, texel))
+            planes: planes(engine, [1; 2], &|plane, _| match plane {
+                Plane::Position => Some(position),
+                Plane::Normal => Some(Vec4::new(0.0, 0.0, 2.0, 0.5)),
+                Plane::BaseColor | Plane::Specular => Some(Vec4::new(0.8, 0.6, 0.4, 0.25)),
+                Plane::Stencil => None,
+                _ => Some(Vec4::ZERO),
             }),
             depth: sampled(engine, vk::Format::R32_SFLOAT, depth),
             module: None,
@@ -79,7 +76,7 @@ impl<'a> OnePixel<'a> {
 
     /// The planes that there are, as a pass reads them.
     pub fn planes(&self) -> Planes<Option<Resource>> {
-        Planes::from_fn(|plane| self.planes[plane].as_ref().map(read_image))
+        reads(&self.planes)
     }
 
     /// Under [`lamp`], of surfaces that need these effects beside both lobes and a reflectance of their own.
@@ -103,85 +100,48 @@ impl<'a> OnePixel<'a> {
         camera: Vec3,
         matrix: Option<Mat4>,
     ) -> [Vec4; 2] {
-        let host = self.engine.host();
         let [radiance, glossy] = [(); 2].map(|()| stored(self.engine, options.format));
         let (kept, own);
         let pass: &ShadePass = if let Some(module) = &self.module {
             let info = ShadePassInfo { module: Some(module.clone()), ..options.into() };
-            // SAFETY: Host::submit waits; the module is the test's.
+            // SAFETY: `run` waits; the module is the test's.
             own = unsafe { ShadePass::new(self.engine.context(), info) }.unwrap();
             &own
         } else {
             kept = self.engine.shade_pass(options).unwrap();
             &kept
         };
-        // SAFETY: Host::submit waits, and everything here is dropped before the engine.
-        unsafe {
-            let packed = PackedLights::new(lights, DVec3::ZERO).unwrap();
-            let light_buffer = host.storage_buffer("lights", &packed.lights).unwrap();
-            let vertex_buffer = host.storage_buffer("vertices", &packed.vertices).unwrap();
-            let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
-            let set = pool.allocate(pass.set_layout()).unwrap();
-            let mut planes = self.planes();
-            if options.from_depth {
-                planes[Plane::Position] = Some(read_image(&self.depth));
-            }
-            let resources = ShadeResources {
-                table: self.engine.table(),
-                lights: Resource::buffer(light_buffer.handle()),
-                light_vertices: Resource::buffer(vertex_buffer.handle()),
-                planes,
-                radiance: Resource::StorageImage { view: radiance.view() },
-                glossy: Some(Resource::StorageImage { view: glossy.view() }),
-                light_textures: Some(self.engine.light_textures()),
-                ..ShadeResources::default()
-            };
-            pass.write_set(set, &resources).unwrap();
-            let frame = ShadeFrame {
-                size: [1, 1],
-                camera,
-                position_from_clip: matrix,
-                lights: packed.summary(),
-                ..ShadeFrame::default()
-            };
-            host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
+        let lights = LightBuffers::new(self.engine, lights, DVec3::ZERO);
+        let mut planes = self.planes();
+        if options.from_depth {
+            planes[Plane::Position] = Some(pass::read(&self.depth));
         }
+        let resources = ShadeResources {
+            planes,
+            radiance: store(&radiance),
+            glossy: Some(store(&glossy)),
+            light_textures: Some(self.engine.light_textures()),
+            ..lights.resources(self.engine)
+        };
+        let frame = ShadeFrame { position_from_clip: matrix, ..lights.frame([1; 2], camera) };
+        run(self.engine, pass, &resources, [1; 2], &[frame], Descriptors::Sets);
         [radiance, glossy].map(|image| read(&image, options.format))
     }
 }
 
-/// An image as a pass reads it.
-fn read_image(image: &Image) -> Resource {
-    Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout }
-}
-
-fn image(engine: &TestEngine, format: vk::Format, usage: vk::ImageUsageFlags) -> Image {
-    let description = ImageDescription { name: "one pixel", extent: [1, 1], layers: 1, format, usage };
-    engine.host().image(&description).unwrap()
-}
-
 /// An image of one texel, to be read.
 fn sampled<T: Pod>(engine: &TestEngine, format: vk::Format, texel: T) -> Image {
-    let image = image(engine, format, vk::ImageUsageFlags::SAMPLED);
-    image.upload(&[texel], Usage::COMPUTE_READ).unwrap();
-    image
+    image(engine, [1; 2], format, vk::ImageUsageFlags::SAMPLED, &[texel])
 }
 
 /// An image for radiance, which holds [`BEFORE`].
 pub fn stored(engine: &TestEngine, format: RadianceFormat) -> Image {
-    let before = BEFORE.to_array();
     match format {
-        RadianceFormat::Rgba32Float => {
-            let image = image(engine, vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::STORAGE);
-            image.upload(&[before], Usage::COMPUTE_WRITE).unwrap();
-            image
-        }
+        RadianceFormat::Rgba32Float => pass::radiance(engine, [1; 2], BEFORE),
         RadianceFormat::Rgba16Float => {
-            let image = image(engine, vk::Format::R16G16B16A16_SFLOAT, vk::ImageUsageFlags::STORAGE);
-            image
-                .upload(&[before.map(|value| f16::from_f32(value).to_bits())], Usage::COMPUTE_WRITE)
-                .unwrap();
-            image
+            let before = BEFORE.to_array().map(|value| f16::from_f32(value).to_bits());
+            let (format, usage) = (vk::Format::R16G16B16A16_SFLOAT, vk::ImageUsageFlags::STORAGE);
+            image(engine, [1; 2], format, usage, &[before])
         }
     }
 }
@@ -189,10 +149,7 @@ pub fn stored(engine: &TestEngine, format: RadianceFormat) -> Image {
 /// What a pass left in such an image.
 pub fn read(image: &Image, format: RadianceFormat) -> Vec4 {
     match format {
-        RadianceFormat::Rgba32Float => {
-            let texels: Vec<[f32; 4]> = image.download(Usage::COMPUTE_WRITE).unwrap();
-            Vec4::from_array(texels[0])
-        }
+        RadianceFormat::Rgba32Float => pass::stored_in(image)[0],
         RadianceFormat::Rgba16Float => {
             let texels: Vec<[u16; 4]> = image.download(Usage::COMPUTE_WRITE).unwrap();
             Vec4::from_array(texels[0].map(|bits| f16::from_bits(bits).to_f32()))

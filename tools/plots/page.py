@@ -111,16 +111,6 @@ def effects(found):
     return svg(made, "What each effect adds to the time of the default level", alone=False)
 
 
-def growing(found, of):
-    """A frame's time by the number of lights or pixels."""
-    made, axes = figure(860, 340)
-    axes.set_ylabel("milliseconds a frame")
-    lines = [(one["method"], [(count, time["median"]) for count, time in one["steps"]])
-             for one in found["scaling"][f"by_{of}"]]
-    plots.growth(axes, lines, of, colours=(THEIRS, OURS, NOISE))
-    return svg(made, f"Time of a frame by its number of {of}", alone=False)
-
-
 def pictures(found):
     """What methods make of a scene, each above its difference from the reference."""
     shown = found["pictures"]
@@ -191,9 +181,6 @@ def page(found):
          "what its horizon costs. With a table of published quality, fit and table are one part.", parts(found)),
         ("What an effect adds", "On a frame in which no light needs it, and on one of lights that do. What is not in the set "
          "costs nothing.", effects(found)),
-        ("More lights", f"{found['scaling']['pixels']} pixels, no tiles.", growing(found, "lights")),
-        ("More pixels", "Where the line is straight and steep the device is full; where it is flat, a dispatch's own cost is "
-         "seen.", growing(found, "pixels")),
     ]
     if found.get("pictures"):
         shown = found["pictures"]

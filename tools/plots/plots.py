@@ -259,7 +259,7 @@ def lights(found):
 def shapes(found):
     """Error against time of the ways to a disk that crosses the horizon."""
     ours = ("disk, exact", "disk, difference")
-    dots = [(cost["method"], cost["ratio"], cost["error"]["rms"], OURS if cost["method"] in ours else THEIRS)
+    dots = [(cost["method"], cost["ratio"]["median"], cost["error"]["rms"], OURS if cost["method"] in ours else THEIRS)
             for cost in found["costs"] if cost["error"]]
     title = f"Error against time of disks that cross the horizon: {found['device']}"
     made, axes = figure(860, 440)

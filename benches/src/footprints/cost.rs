@@ -2,6 +2,7 @@
 
 use super::{EFFECTS, METHODS, untextured};
 use crate::cost::quantile;
+use crate::ladder::Spread;
 use crate::textures::{is_software, timed};
 use arealight::kernels::Kernel;
 use arealight::{Effects, PackedLights, Quality};
@@ -109,8 +110,7 @@ pub(super) fn measure(
     }
     let ratio = |run: &Run, other: &str| {
         let other = runs.iter().find(|run| run.method == other).unwrap_or(run);
-        let ratios: Vec<f64> = run.seconds.iter().zip(&other.seconds).map(|(a, b)| a / b).collect();
-        quantile(&ratios, 0.5)
+        Spread::of_ratios(&run.seconds, &other.seconds).median
     };
     let cost = |run: &Run| Cost {
         method: run.method,

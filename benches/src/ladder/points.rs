@@ -84,24 +84,6 @@ pub fn lights(kind: LightKind) -> Vec<Light> {
     FRAMES.iter().enumerate().map(light).collect()
 }
 
-/// As many lights as wanted, small ones all about the points.
-pub fn many_lights(count: usize) -> Vec<Light> {
-    let light = |index: usize| {
-        let mut random = Stream::new("many lights", index as u64, 0);
-        let center =
-            DVec3::new(random.between(-4.0, 4.0), random.between(-1.0, 3.0), random.between(-8.0, -2.0));
-        let (u, v) = random.direction().any_orthonormal_pair();
-        let (u, v) = (u * random.between(0.05, 0.3), v * random.between(0.05, 0.3));
-        Light {
-            name: format!("light {index}"),
-            radiance: Vec3::ONE,
-            shape: LightShape::Polygon([-u - v, u - v, u + v, v - u].map(|corner| center + corner).to_vec()),
-            ..Light::default()
-        }
-    };
-    (0..count).map(light).collect()
-}
-
 /// `count` points about the lights of a kind. Another seed makes others.
 pub fn points(kind: LightKind, count: usize, seed: u64) -> Vec<Point> {
     (0..count).map(|index| point(kind, index, &mut Stream::new("points", index as u64, seed))).collect()
@@ -161,7 +143,6 @@ mod tests {
                 assert_eq!(light.effects(), effects, "{kind:?} {}", light.name);
             }
         }
-        assert!(many_lights(50).iter().all(|light| light.validate().is_ok()));
     }
 
     #[test]

@@ -119,20 +119,6 @@ impl Ladder {
         )
     }
 
-    fn scaling(&self, by_lights: bool) -> Table {
-        let growths = if by_lights { &self.scaling.by_lights } else { &self.scaling.by_pixels };
-        let mut heads = vec![if by_lights { "lights" } else { "pixels" }];
-        let names: Vec<String> = growths.iter().map(|growth| format!("{}, ms", growth.method)).collect();
-        heads.extend(names.iter().map(String::as_str));
-        let steps = growths.first().map_or(0, |growth| growth.steps.len());
-        let row = |index: usize| {
-            let count = growths.first().map_or(0, |growth| growth.steps[index].0);
-            let cells = growths.iter().map(|growth| number(growth.steps[index].1.median));
-            std::iter::once(count.to_string()).chain(cells).collect()
-        };
-        Table::new(&heads, (0..steps).map(row))
-    }
-
     /// What the numbers are, in words.
     pub fn legend(&self) -> String {
         let clock = if self.software {
@@ -148,7 +134,7 @@ impl Ladder {
              on the same device. {READS}",
             self.points,
             self.pixels,
-            self.scaling.lights,
+            super::points::LIGHTS,
             self.rounds,
             BASELINE.name()
         )
@@ -162,18 +148,6 @@ impl Ladder {
         }
         let _ = write!(text, "\nMonte Carlo\n{}", self.samples().to_text());
         let _ = write!(text, "\neffects\n{}", self.effects().to_text());
-        let _ = write!(
-            text,
-            "\ntime by lights, {} pixels\n{}",
-            self.scaling.pixels,
-            self.scaling(true).to_text()
-        );
-        let _ = write!(
-            text,
-            "\ntime by pixels, {} lights\n{}",
-            self.scaling.lights,
-            self.scaling(false).to_text()
-        );
         let _ = writeln!(text, "\n{:.0} s", self.seconds);
         text
     }
@@ -186,18 +160,6 @@ impl Ladder {
         }
         let _ = write!(text, "\n### Monte Carlo\n\n{}", self.samples().to_markdown());
         let _ = write!(text, "\n### Effects\n\n{}", self.effects().to_markdown());
-        let _ = write!(
-            text,
-            "\n### Time by lights, {} pixels\n\n{}",
-            self.scaling.pixels,
-            self.scaling(true).to_markdown()
-        );
-        let _ = write!(
-            text,
-            "\n### Time by pixels, {} lights\n\n{}",
-            self.scaling.lights,
-            self.scaling(false).to_markdown()
-        );
         text
     }
 }

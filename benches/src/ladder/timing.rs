@@ -22,6 +22,17 @@ impl Spread {
         Self { median: quantile(0.5), quartiles: [quantile(0.25), quantile(0.75)] }
     }
 
+    /// Of one value a round over another in the same round.
+    pub fn of_ratios(values: &[f64], to: &[f64]) -> Self {
+        Self::of(&values.iter().zip(to).map(|(value, to)| value / to).collect::<Vec<_>>())
+    }
+
+    /// "The median, and the quartiles", for a table.
+    pub(crate) fn cells(&self) -> [String; 2] {
+        let [low, high] = self.quartiles;
+        [format!("{:.2}", self.median), format!("{low:.2} to {high:.2}")]
+    }
+
     /// Multiplied.
     #[must_use]
     pub fn times(self, factor: f64) -> Self {
@@ -92,8 +103,7 @@ impl Clock {
 
     /// The time with all lights over another's, round by round.
     pub fn ratio(&self, other: &Self) -> Spread {
-        let ratios: Vec<f64> = self.seconds[1].iter().zip(&other.seconds[1]).map(|(a, b)| a / b).collect();
-        Spread::of(&ratios)
+        Spread::of_ratios(&self.seconds[1], &other.seconds[1])
     }
 }
 

@@ -14,8 +14,12 @@ use glam::{DMat3, DVec3};
 /// The largest backward error: the distance to the values of shapes whose numbers differ by [`MOVE`] of their
 /// length.
 const BACKWARD: f64 = 1e-6;
+/// The same of disks: what `arealight_ellipse_form_factor` promises.
+const BACKWARD_OF_DISKS: f64 = 6e-7;
 /// Far shapes: the largest error as a part of what one sends at the zenith; of tubes by the difference form.
 const RELATIVE: f64 = 1e-5;
+/// The same of disks, whose height above their plane is rounded in the distance.
+const RELATIVE_OF_DISKS: f64 = 5e-6;
 /// The difference form's level.
 const DIFFERENCE: u32 = 1;
 
@@ -109,7 +113,7 @@ impl Case {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Judgement {
     /// Its backward error.
-    Backward,
+    Backward(f64),
     /// And relative to what the light sends at most, as far lights are.
     Relative(f64),
 }
@@ -134,15 +138,14 @@ impl Family {
     /// What the error of a result may be.
     pub(super) fn promise(&self) -> f64 {
         match self.judgement {
-            Judgement::Backward => BACKWARD,
-            Judgement::Relative(bound) => bound,
+            Judgement::Backward(bound) | Judgement::Relative(bound) => bound,
         }
     }
 
     /// The error of a result that the promise is about; infinite for what is no finite number.
     pub(super) fn error(&self, case: &Case, found: f64) -> f64 {
         match self.judgement {
-            Judgement::Backward => case.backward_error(found),
+            Judgement::Backward(_) => case.backward_error(found),
             Judgement::Relative(_) if !found.is_finite() => f64::INFINITY,
             Judgement::Relative(_) => (found - case.value()).abs() / case.most(),
         }
@@ -159,16 +162,16 @@ pub(super) fn families() -> Vec<Family> {
             // One far disk in a thousand that lie any way is cut by the horizon
             level: if family.name.starts_with("far") { DIFFERENCE } else { 0 },
             judgement: if family.name.starts_with("far") {
-                Judgement::Relative(RELATIVE)
+                Judgement::Relative(RELATIVE_OF_DISKS)
             } else {
-                Judgement::Backward
+                Judgement::Backward(BACKWARD_OF_DISKS)
             },
             make: Box::new(|index, seed| Case::Ellipse(family.case(index, seed))),
         })
         .collect();
     for (name, low, high, judgement) in [
-        ("sphere, near", -1.5, 4.0, Judgement::Backward),
-        ("sphere, in contact", -20.0, -7.0, Judgement::Backward),
+        ("sphere, near", -1.5, 4.0, Judgement::Backward(BACKWARD)),
+        ("sphere, in contact", -20.0, -7.0, Judgement::Backward(BACKWARD)),
         ("sphere, far", 10.0, 26.0, Judgement::Relative(RELATIVE)),
     ] {
         families.push(Family {
@@ -192,9 +195,9 @@ pub(super) fn families() -> Vec<Family> {
         ] {
             let judgement = match place {
                 Place::Far | Place::FarCrossing | Place::FarSlim => Judgement::Relative(RELATIVE),
-                _ => Judgement::Backward,
+                _ => Judgement::Backward(BACKWARD),
             };
-            let is_far = !matches!(judgement, Judgement::Backward);
+            let is_far = !matches!(judgement, Judgement::Backward(_));
             families.push(Family {
                 name: format!("{name}, {}", place.name()),
                 function: ShapeFunction::Tube,

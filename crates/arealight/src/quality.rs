@@ -130,12 +130,6 @@ impl Level {
     }
 }
 
-impl From<Level> for Quality {
-    fn from(level: Level) -> Self {
-        level.quality()
-    }
-}
-
 /// What a pass is specialised for, choice by choice: of a [`Level`], or of your own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Quality {

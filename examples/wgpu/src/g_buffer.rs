@@ -98,6 +98,9 @@ impl GBuffer {
     }
 
     /// The radiance, once all that was submitted is done.
+    ///
+    /// # Errors
+    /// Where the device is lost.
     pub fn picture(&self, gpu: &Gpu) -> Result<Picture> {
         const ALIGNED: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
         let [width, height] = self.size;

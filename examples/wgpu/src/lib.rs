@@ -44,6 +44,9 @@ impl Gpu {
 }
 
 /// Draws and shades the scene as it is after `seconds`.
+///
+/// # Errors
+/// Where the device refuses.
 pub fn draw(gpu: &Gpu, size: [u32; 2], seconds: f64) -> Result<Picture> {
     let g_buffer = GBuffer::new(gpu, size);
     let shading = Shading::new(gpu, &g_buffer)?;

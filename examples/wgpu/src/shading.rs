@@ -34,6 +34,9 @@ pub struct Shading {
 
 impl Shading {
     /// Makes the pass, uploads the table, and points a set at the G-buffer's images.
+    ///
+    /// # Errors
+    /// Where the device is not Vulkan's, or refuses.
     pub fn new(gpu: &Gpu, g_buffer: &GBuffer) -> Result<Self> {
         // doc: context
         // SAFETY: the handles are wgpu's, belong together, and nothing here destroys them.

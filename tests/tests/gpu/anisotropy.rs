@@ -1,15 +1,10 @@
 //! Anisotropic GGX on the GPU: against the float64 twin, against isotropic GGX, in its image of a G-buffer,
 //! and where it is hard.
 
-use arealight::plan::GBufferLayout;
-use arealight::{Effects, Lobes, Plane, Quality};
-use arealight_engine::EvalPoint;
-use arealight_oracle::material::{Anisotropy, Surface};
-use arealight_tests::materials::{lobe_qualities, under_polygon};
-use arealight_tests::one_pixel::{LAYOUTS, OnePixel, material, under_lamp};
-use arealight_tests::{Random, TestEngine, point, rounding};
-use arealight_vk::ash::vk::Format;
-use glam::{DVec3, Vec4};
+use arealight_oracle::material::Anisotropy;
+use arealight_tests::materials::lobe_qualities;
+use arealight_tests::one_pixel::material;
+use arealight_tests::prelude::*;
 use std::f64::consts::TAU;
 
 const COUNT: usize = 2000;
@@ -169,23 +164,11 @@ fn nothing_jumps_where_the_view_crosses_the_normal() {
 fn every_layout_has_second_roughnesses_in_an_image_of_their_own() {
     let Some(engine) = TestEngine::new() else { return };
     let both = Effects::ANISOTROPY | Effects::DIFFUSE_ROUGHNESS;
-    let shade = |layout, effects, anisotropy: [f32; 4]| {
-        let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);
-        pixel.set(Plane::Anisotropy, Format::R32G32B32A32_SFLOAT, anisotropy);
-        pixel.shade_under_lamp(layout, effects)
-    };
-    for layout in LAYOUTS {
-        let without = shade(layout, Effects::empty(), [0.6, 0.4, 0.9, 0.8]);
-        assert_eq!(shade(layout, both, [0.6, 0.4, 0.0, 0.0]), without, "{layout:?}: zero is none");
-        assert_ne!(shade(layout, both, [0.6, 0.4, 0.9, 0.0]), without, "{layout:?}: anisotropy");
-        assert_ne!(shade(layout, both, [0.6, 0.4, 0.0, 0.8]), without, "{layout:?}: a rough diffuse lobe");
-    }
-    // Against a point without a G-buffer
+    // Both; anisotropy; a rough diffuse lobe
+    let texels = [[0.6, 0.4, 0.9, 0.8], [0.6, 0.4, 0.9, 0.0], [0.6, 0.4, 0.0, 0.8]];
     // On the octahedron's upper half: (0.6, 0.4, 0)
     let anisotropy = Some(Anisotropy { tangent: DVec3::new(0.6, 0.4, 0.0), alpha: 0.81 });
     let surface = Surface { anisotropy, diffuse_roughness: 0.8, ..material().surface() };
-    let expected = engine.eval(&[under_lamp(surface)], Quality::default()).unwrap()[0];
-    let found = shade(GBufferLayout::Arealight, both, [0.6, 0.4, 0.9, 0.8]);
     // Radiance of 3, two lobes, and the least squares' rounding
-    assert!((found - expected).abs().max_element() < 1e-4, "{found} and {expected}");
+    engine.assert_plane((Plane::Anisotropy, both), &[[0.6, 0.4, 0.0, 0.0]], &texels, (surface, 1e-4));
 }

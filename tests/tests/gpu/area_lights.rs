@@ -1,16 +1,12 @@
 //! The object that owns all that shading needs: it draws what the recorder does.
 
-use arealight::plan::{Output, ShadeOptions, ShadowFilter, TileOptions};
-use arealight::{Blockers, Light, LightShape, LightTexture, Plane, PyramidSize, TexturePart};
-use arealight_tests::TestEngine;
-use arealight_tests::floor::{Floor, SIZE, image, lamps, read};
-use arealight_tests::one_pixel::{BEFORE, lamp};
+use arealight::plan::ShadowFilter;
+use arealight::{Blockers, TexturePart};
+use arealight_tests::floor::{SIZE, lamps};
+use arealight_tests::pass::{image, read};
+use arealight_tests::prelude::*;
 use arealight_vk::gpu_allocator::{AllocationSizes, AllocatorDebugSettings, vulkan};
-use arealight_vk::{
-    AreaLights, AreaLightsInfo, Descriptors, Error, ShadeFrame, ShadeResources, TextureUpdate,
-};
-use ash::vk;
-use glam::{DVec2, DVec3, Vec3, Vec4};
+use arealight_vk::{AreaLights, AreaLightsInfo, Error, TextureUpdate};
 use std::sync::{Arc, Mutex};
 
 /// Does something with area lights on the engine's device, and sees that all memory was given back.

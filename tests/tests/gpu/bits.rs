@@ -2,14 +2,12 @@
 //! without the checks of the CPU side in between.
 
 use arealight::gpu::GpuLight;
-use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, PyramidSize, Quality, SpecularLobes};
 use arealight_engine::{SourceImage, SourceTexels};
-use arealight_tests::{Random, TestEngine};
+use arealight_tests::prelude::*;
 use arealight_tool_kernels::gpu::{EvalConstants, GpuCase};
 use arealight_tool_kernels::kernels::EVAL;
 use arealight_tool_kernels::plan;
-use arealight_vk::{ComputePass, Resource};
-use glam::DVec3;
+use arealight_vk::ComputePass;
 
 const COUNT: usize = 50_000;
 

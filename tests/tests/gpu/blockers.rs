@@ -4,12 +4,10 @@
 use arealight::Blockers;
 use arealight_engine::host::Buffer;
 use arealight_oracle::visibility::is_hidden;
-use arealight_scene::{Image, Scene, SceneBuffers, Texture, Wrap};
+use arealight_scene::{Image, Texture, Wrap};
 use arealight_tests::kernel::{BLOCKERS, SCENE_BLOCKERS};
-use arealight_tests::scenes::{lambert, scene_of, without_textures};
-use arealight_tests::{Random, TestEngine};
-use arealight_vk::Resource;
-use glam::{DVec3, Vec2, Vec3};
+use arealight_tests::prelude::*;
+use glam::Vec2;
 
 type Triangle = [Vec3; 3];
 

@@ -12,11 +12,10 @@ use arealight_capi::{
     arealight_pass_record, arealight_pass_set_layout, arealight_pass_tile_memory, arealight_pass_write_set,
     arealight_table_bind_memory, arealight_table_memory, arealight_table_upload,
 };
-use arealight_tests::TestEngine;
 use arealight_tests::c_library::{
     CLibrary, NO_ARRAYS, NO_FRAME, NO_LIGHT, good, no_host, refused, set_layout,
 };
-use ash::vk;
+use arealight_tests::prelude::*;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
@@ -453,8 +452,8 @@ fn c_lights_reach_as_far_as_rust_says() {
         arealight_lobe_density(library.arealight, AREALIGHT_SPECULAR_LOBES_ONE, roughness, density)
     };
     good(asked(0.3, &mut density));
-    let table = arealight::LightTable::ggx();
-    assert_eq!(density.to_bits(), table.lobe_density(arealight::SpecularLobes::One, 0.3).to_bits());
+    let table = LightTable::ggx();
+    assert_eq!(density.to_bits(), table.lobe_density(SpecularLobes::One, 0.3).to_bits());
     refused(asked(1.5, &mut density), ErrorArgument, "roughness: 1.5 must be from 0 to 1");
     // SAFETY: as above.
     let found = |light: &ArealightLight, threshold, reach: &mut ArealightReach| unsafe {
@@ -462,9 +461,9 @@ fn c_lights_reach_as_far_as_rust_says() {
     };
     let moon = moon();
     good(found(&moon, 0.01, &mut reach));
-    let shape = arealight::LightShape::Sphere { center: moon.center.into(), radius: moon.radius };
+    let shape = LightShape::Sphere { center: moon.center.into(), radius: moon.radius };
     let radiance = moon.radiance.into();
-    let light = arealight::Light { radiance, shape, ..arealight::Light::default() };
+    let light = Light { radiance, shape, ..Light::default() };
     let radius = arealight::reach::radius(&light, 0.01, density);
     let [low, high] = arealight::reach::bounds(&light, radius).map(|corner| corner.to_array());
     assert_eq!(reach, ArealightReach { center: moon.center, radius, low, high });

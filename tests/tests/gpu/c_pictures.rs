@@ -1,8 +1,7 @@
 //! What a host in C shades is what the recorder does, to the last bit: lights with images, with holes, of
 //! several faces, and a G-buffer of the host's own, with a table whose first upload was never run.
 
-use arealight::plan::ShadeOptions;
-use arealight::{Effects, Light, LightFault, LightShape, LightTexture, Plane, TexturePart, Wrap};
+use arealight::{LightFault, TexturePart, Wrap};
 use arealight_capi::{
     AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, AREALIGHT_DESCRIPTORS_PUSHED, AREALIGHT_EFFECT_COAT,
     AREALIGHT_EFFECT_COAT_NORMAL, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_LIGHT_MESH, AREALIGHT_WRAP_MIRROR,
@@ -13,13 +12,11 @@ use arealight_capi::{
     arealight_textures_destroy, arealight_textures_image, arealight_textures_needs, arealight_textures_setup,
     arealight_textures_update, arealight_textures_write_source_set,
 };
-use arealight_engine::host::{DescriptorPool, HostError, Image, ImageDescription, Usage};
+use arealight_engine::host::{DescriptorPool, HostError};
 use arealight_engine::{SourceImage, SourceTexels};
-use arealight_tests::TestEngine;
 use arealight_tests::c_library::{CLibrary, DeviceMemory, NO_FRAME, NO_LIGHT, good, refused, set_layout};
-use arealight_tests::one_pixel::{OnePixel, lamp};
+use arealight_tests::prelude::*;
 use ash::vk::{self, Handle as _};
-use glam::{DVec2, DVec3, Vec3, Vec4};
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
@@ -281,7 +278,7 @@ fn source(engine: &TestEngine, texels: &[[u8; 4]]) -> Image {
 fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     let Some(mut engine) = TestEngine::new() else { return };
     let shown = SourceImage { size: SIZE, texels: SourceTexels::Srgb(&texels()), part: part() };
-    let size = arealight::PyramidSize::new(128).unwrap();
+    let size = PyramidSize::new(128).unwrap();
     let black = SourceImage {
         size: [1, 1],
         texels: SourceTexels::Srgb(&[[0, 0, 0, 255]]),

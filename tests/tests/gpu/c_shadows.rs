@@ -1,7 +1,7 @@
 //! Shadows of a host in C are the recorder's, to the last bit.
 
-use arealight::plan::{ShadeOptions, ShadowFilter};
-use arealight::{Blockers, Plane};
+use arealight::Blockers;
+use arealight::plan::ShadowFilter;
 use arealight_capi::{
     AREALIGHT_SHADOW_FILTER_GATHER, AREALIGHT_WHOLE_SIZE, ArealightBlockerArrays, ArealightBuffer,
     ArealightFrame, ArealightImage, ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult,
@@ -12,17 +12,14 @@ use arealight_capi::{
     arealight_shadow_pass_destroy, arealight_shadow_pass_prepare, arealight_shadow_pass_record,
     arealight_shadow_pass_set_layout, arealight_shadow_pass_write_set,
 };
-use arealight_engine::host::{Buffer, Image, Usage};
-use arealight_oracle::material::Material;
-use arealight_tests::TestEngine;
+use arealight_engine::host::Buffer;
 use arealight_tests::c_library::{
     CLibrary, DeviceMemory, NO_ARRAYS, NO_FRAME, c_lamp, good, refused, set_layout,
 };
-use arealight_tests::one_pixel::lamp;
+use arealight_tests::prelude::*;
 use arealight_tests::shadow_patch::{PatchPasses, SIDE, ShadowPatch, filled, stored};
 use arealight_vk::ShadowPass;
 use ash::vk::{self, Handle as _};
-use glam::{Vec3, Vec4};
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 

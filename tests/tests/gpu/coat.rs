@@ -1,15 +1,11 @@
 //! Clear coats on the GPU: against the float64 twin, against no coat, and where they are hard.
 
-use arealight::plan::GBufferLayout;
-use arealight::{Effects, MIN_ALPHA, Plane, Quality, SpecularLobes};
-use arealight_engine::EvalPoint;
+use arealight::MIN_ALPHA;
 use arealight_oracle::frame::SurfaceFrame;
-use arealight_oracle::material::{Coat, Material, Surface};
-use arealight_tests::materials::{lobe_qualities, shape_lights, under_polygon};
-use arealight_tests::one_pixel::{LAYOUTS, OnePixel, material, under_lamp};
-use arealight_tests::{Random, TestEngine, lambert_surface, rounding};
+use arealight_tests::materials::{changed, lobe_qualities, points_of, under_shapes};
+use arealight_tests::one_pixel::{LAYOUTS, material};
+use arealight_tests::prelude::*;
 use arealight_vk::ash::vk::Format;
-use glam::{DVec3, Vec3, Vec4};
 
 const COUNT: usize = 2000;
 
@@ -35,14 +31,7 @@ fn coated(random: &mut Random, tilt: f64) -> Surface {
 
 /// Coated points under polygons of 3 to 8 vertices anywhere, above, across and below their horizons.
 fn points(seed: u64, tilt: f64) -> Vec<EvalPoint> {
-    let mut random = Random::new(seed);
-    let one = |i| {
-        let surface = coated(&mut random, tilt);
-        let cos_view = random.between(0.02, 1.0);
-        let view = DVec3::new((1.0 - cos_view * cos_view).sqrt(), 0.0, cos_view);
-        under_polygon(&mut random, i, surface, view)
-    };
-    (0..COUNT).map(one).collect()
+    points_of(seed, COUNT, 0.02, |random, _| coated(random, tilt))
 }
 
 /// What float32 may lose of the three lobes, of the coat's by its share: with both horizons they are divided
@@ -96,14 +85,7 @@ fn coats_follow_their_float64_twin() {
 #[test]
 fn disks_spheres_and_tubes_light_coats_as_their_float64_twins() {
     let Some(engine) = TestEngine::new() else { return };
-    let mut random = Random::new(4);
-    let points: Vec<EvalPoint> = points(5, 1.0)
-        .into_iter()
-        .take(300)
-        .flat_map(|EvalPoint { surface, position, normal, view, .. }| {
-            shape_lights(&mut random).map(|light| EvalPoint { surface, position, normal, view, light })
-        })
-        .collect();
+    let points = under_shapes(4, points(5, 1.0).into_iter().take(300));
     // A curved outline's ends on a horizon: 1e-5 of a form factor (docs/shapes.md)
     engine.assert_follows_shape_twin("coats under shapes", &points, |given| {
         bound(&given.surface, given.normal, given.view) + 1e-5
@@ -114,26 +96,11 @@ fn disks_spheres_and_tubes_light_coats_as_their_float64_twins() {
 fn a_coat_of_no_weight_is_none_to_the_bit() {
     let Some(engine) = TestEngine::new() else { return };
     let with = points(6, 2.5);
-    let changed = |change: fn(Coat) -> Option<Coat>| -> Vec<EvalPoint> {
-        let change = |point: &EvalPoint| {
-            let coat = point.surface.coat.and_then(change);
-            EvalPoint { surface: Surface { coat, ..point.surface }, ..point.clone() }
-        };
-        with.iter().map(change).collect()
+    let of = |change: fn(Coat) -> Option<Coat>| {
+        changed(&with, |surface| Surface { coat: surface.coat.and_then(change), ..*surface })
     };
-    let weightless = changed(|coat| Some(Coat { weight: 0.0, ..coat }));
-    for quality in lobe_qualities() {
-        let without = engine.eval_bits(&changed(|_| None), quality);
-        assert_eq!(engine.eval_bits(&weightless, quality), without, "{quality:?}");
-        // The twin: of any weight it is seen
-        let same = engine
-            .eval_bits(&with, quality)
-            .iter()
-            .zip(&without)
-            .filter(|(with, without)| with == without)
-            .count();
-        assert!(same < COUNT / 2, "{same} points are the same");
-    }
+    let weightless = of(|coat| Some(Coat { weight: 0.0, ..coat }));
+    engine.assert_none_to_the_bit(&lobe_qualities(), [&weightless, &of(|_| None), &with]);
 }
 
 #[test]
@@ -170,34 +137,27 @@ fn octahedron(direction: Vec3) -> [f32; 2] {
 #[test]
 fn every_layout_has_its_coats_in_an_image_of_their_own() {
     let Some(engine) = TestEngine::new() else { return };
-    let shade = |layout, effects, coat: [f32; 4]| {
-        let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);
-        pixel.set(Plane::Coat, Format::R32G32B32A32_SFLOAT, coat);
-        pixel.shade_under_lamp(layout, effects)
+    let material = Material { coat: 0.75, coat_roughness: 0.3, ..material() };
+    let below = |normal: Option<Vec3>| {
+        let surface = material.surface();
+        let coat = surface.coat.map(|coat| Coat { normal: normal.map(Vec3::as_dvec3), ..coat });
+        Surface { coat, ..surface }
     };
-    let coats = Effects::COAT | Effects::COAT_NORMAL;
     // Down to the lower half of the octahedron
     for normal in [Vec3::new(0.3, -0.2, 0.9), Vec3::new(0.9, 0.3, -0.2)] {
         let [x, y] = octahedron(normal);
-        let texel = [0.75, 0.3, x, y];
-        for layout in LAYOUTS {
-            let without = shade(layout, Effects::empty(), texel);
-            assert_eq!(shade(layout, coats, [0.0, 0.3, x, y]), without, "{layout:?}: no weight, no coat");
-            assert_ne!(shade(layout, coats, texel), without, "{layout:?}");
-            assert_ne!(shade(layout, coats, texel), shade(layout, Effects::COAT, texel), "{layout:?}");
-        }
-        // Against a point without a G-buffer
-        let material = Material { coat: 0.75, coat_roughness: 0.3, ..material() };
-        let given = |normal: Option<Vec3>| {
-            let surface = material.surface();
-            let coat = surface.coat.map(|coat| Coat { normal: normal.map(Vec3::as_dvec3), ..coat });
-            under_lamp(Surface { coat, ..surface })
-        };
-        for (effects, given) in [(coats, given(Some(normal))), (Effects::COAT, given(None))] {
-            let expected = engine.eval(&[given], Quality::default()).unwrap()[0];
-            let found = shade(GBufferLayout::Arealight, effects, texel);
+        let coats = Effects::COAT | Effects::COAT_NORMAL;
+        // With a normal of its own, and without
+        for (effects, normal) in [(coats, Some(normal)), (Effects::COAT, None)] {
             // Radiance of 3, three lobes, and a normal that is rounded on its way through the octahedron
-            assert!((found - expected).abs().max_element() < 2e-5, "{effects}: {found} and {expected}");
+            let (nones, texels) = ([[0.0, 0.3, x, y]], [[0.75, 0.3, x, y]]);
+            engine.assert_plane((Plane::Coat, effects), &nones, &texels, (below(normal), 2e-5));
+        }
+        for layout in LAYOUTS {
+            let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);
+            pixel.set(Plane::Coat, Format::R32G32B32A32_SFLOAT, [0.75_f32, 0.3, x, y]);
+            let [with, without] = [coats, Effects::COAT].map(|all| pixel.shade_under_lamp(layout, all));
+            assert_ne!(with, without, "{layout:?}");
         }
     }
 }

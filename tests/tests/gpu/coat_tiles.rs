@@ -1,11 +1,8 @@
 //! Tiles of coated surfaces: a coat has a horizon of its own, and takes light from what is below.
 
-use arealight::plan::{ShadeOptions, TileOptions};
-use arealight::{Horizon, Light, LightShape, Quality};
-use arealight_scene::{Image, Scene, SceneMaterial, Texture, Wrap};
-use arealight_tests::TestEngine;
-use arealight_tests::frame::{scene, with_renderer};
-use glam::{DVec3, Vec3, Vec4};
+use arealight_scene::{Image, SceneMaterial, Texture, Wrap};
+use arealight_tests::frame::scene;
+use arealight_tests::prelude::*;
 
 const SIZE: [u32; 2] = [61, 37];
 

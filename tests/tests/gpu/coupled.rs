@@ -1,12 +1,9 @@
 //! Diffuse lobes below a Fresnel term on the GPU, rough ones, and layers by albedo: against the float64 twin,
 //! and where they are hard.
 
-use arealight::{Effects, Quality};
-use arealight_engine::EvalPoint;
-use arealight_oracle::material::{Coat, Interface, Surface};
-use arealight_tests::materials::{lobe_qualities, shape_lights, under_polygon};
-use arealight_tests::{Random, TestEngine, point, rounding};
-use glam::DVec3;
+use arealight_oracle::material::Interface;
+use arealight_tests::materials::{changed, lobe_qualities, points_of, under_shapes};
+use arealight_tests::prelude::*;
 
 const COUNT: usize = 2000;
 
@@ -45,14 +42,7 @@ fn layered(random: &mut Random, kind: Kind) -> Surface {
 
 /// Points under polygons of 3 to 8 vertices anywhere, above, across and below their horizons.
 fn points(seed: u64, kind: Kind) -> Vec<EvalPoint> {
-    let mut random = Random::new(seed);
-    let one = |i| {
-        let surface = layered(&mut random, kind);
-        let cos_view = random.between(0.0, 1.0);
-        let view = DVec3::new((1.0 - cos_view * cos_view).sqrt(), 0.0, cos_view);
-        under_polygon(&mut random, i, surface, view)
-    };
-    (0..COUNT).map(one).collect()
+    points_of(seed, COUNT, 0.0, |random, _| layered(random, kind))
 }
 
 /// Three lobes, divided by their parts above the surface where both horizons clip, of which the least is .6.
@@ -82,14 +72,8 @@ fn layers_follow_their_float64_twin() {
 #[test]
 fn disks_spheres_and_tubes_light_layers_as_their_float64_twins() {
     let Some(engine) = TestEngine::new() else { return };
-    let mut random = Random::new(4);
     // Surfaces of every kind in one list, each by what it asks for
-    let surfaces = KINDS.into_iter().flat_map(|kind| points(5, kind).into_iter().take(70));
-    let points: Vec<EvalPoint> = surfaces
-        .flat_map(|EvalPoint { surface, position, normal, view, .. }| {
-            shape_lights(&mut random).map(|light| EvalPoint { surface, position, normal, view, light })
-        })
-        .collect();
+    let points = under_shapes(4, KINDS.into_iter().flat_map(|kind| points(5, kind).into_iter().take(70)));
     // A curved outline's ends on a horizon: 1e-5 of a form factor (docs/shapes.md)
     engine.assert_follows_shape_twin("layers under shapes", &points, |given| bound(&given.surface) + 1e-5);
 }
@@ -98,20 +82,11 @@ fn disks_spheres_and_tubes_light_layers_as_their_float64_twins() {
 fn an_interface_that_reflects_nothing_is_none_to_the_bit() {
     let Some(engine) = TestEngine::new() else { return };
     let with = points(7, Kind::Coupled);
-    let bits = |interface: fn(Interface) -> Option<Interface>| -> Vec<[u32; 3]> {
-        let changed: Vec<EvalPoint> = with
-            .iter()
-            .map(|given| {
-                let interface = given.surface.interface.and_then(interface);
-                EvalPoint { surface: Surface { interface, ..given.surface }, ..given.clone() }
-            })
-            .collect();
-        engine.eval_bits(&changed, Quality::default())
+    let of = |change: fn(Interface) -> Option<Interface>| {
+        changed(&with, |surface| Surface { interface: surface.interface.and_then(change), ..*surface })
     };
-    let none = bits(|_| None);
-    assert_eq!(bits(|i| Some(Interface { f0: 0.0, f90: 0.0, ..i })), none);
-    // The twin: one that reflects
-    assert_ne!(bits(Some), none);
+    let dark = of(|interface| Some(Interface { f0: 0.0, f90: 0.0, ..interface }));
+    engine.assert_none_to_the_bit(&[Quality::default()], [&dark, &of(|_| None), &with]);
 }
 
 #[test]

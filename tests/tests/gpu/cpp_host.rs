@@ -1,15 +1,12 @@
 //! The host in C++ (examples/cpp) is compiled, runs under validation, and draws what the recorder draws from
 //! Rust, to the last bit.
 
-use arealight::plan::ShadeOptions;
-use arealight::{Light, LightShape, PackedLights, Plane};
 use arealight_capi::AREALIGHT_ABI_VERSION;
-use arealight_engine::host::{Image, ImageDescription, Usage};
-use arealight_tests::TestEngine;
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
-use ash::vk;
-use bytemuck::Pod;
-use glam::{DVec3, Vec3};
+use arealight_tests::pass::{
+    LightBuffers, image, planes, radiance, read, reads, run as shade_by, store, stored_in, texels,
+};
+use arealight_tests::prelude::*;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -103,92 +100,39 @@ fn lights() -> [Light; 4] {
     ]
 }
 
-/// The host's G-buffer.
-#[derive(Default)]
-struct Surfaces {
-    position: Vec<[f32; 4]>,
-    /// With roughness.
-    normal: Vec<[f32; 4]>,
-    /// With metalness.
-    base_color: Vec<[u8; 4]>,
-}
-
-fn surfaces() -> Surfaces {
-    let mut surfaces = Surfaces::default();
+/// A texel of the host's G-buffer.
+fn texel(plane: Plane, [x, y]: [u32; 2]) -> Option<Vec4> {
     let [width, height] = SIZE.map(|side| side as f32);
-    for y in 0..SIZE[1] {
-        for x in 0..SIZE[0] {
-            let right = (x as f32 + 0.5) / width * 2.0 - 1.0;
-            let up = 0.4 - (y as f32 + 0.5) / height;
-            let hit = up < 0.0;
-            let distance = if hit { 1.5 / -up } else { 0.0 };
-            surfaces.position.push([
-                right * distance,
-                up * distance,
-                -1.5 * distance,
-                f32::from(u8::from(hit)),
-            ]);
-            surfaces.normal.push([0.0, 1.0, 0.0, 0.05 + 0.9 * (x as f32 / width)]);
-            surfaces.base_color.push([200, 180, 150, if y / 16 % 2 == 1 { 255 } else { 0 }]);
+    let right = (x as f32 + 0.5) / width * 2.0 - 1.0;
+    let up = 0.4 - (y as f32 + 0.5) / height;
+    let hit = up < 0.0;
+    let distance = if hit { 1.5 / -up } else { 0.0 };
+    match plane {
+        Plane::Position => {
+            Some(Vec4::new(right * distance, up * distance, -1.5 * distance, f32::from(u8::from(hit))))
         }
+        Plane::Normal => Some(Vec3::Y.extend(0.05 + 0.9 * (x as f32 / width))),
+        _ => None,
     }
-    surfaces
-}
-
-fn filled<T: Pod>(image: Image, texels: &[T]) -> Image {
-    image.upload(texels, Usage::COMPUTE_READ).unwrap();
-    image
 }
 
 /// The same picture by the recorder's Rust interface.
 fn draw(engine: &TestEngine, lights: &[Light]) -> Vec<[f32; 3]> {
-    let image = |name, format, usage| {
-        let description = ImageDescription { name, extent: SIZE, layers: 1, format, usage };
-        engine.host().image(&description).unwrap()
-    };
-    let surfaces = surfaces();
-    let (float, sampled) = (vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::SAMPLED);
-    let position = filled(image("position", float, sampled), &surfaces.position);
-    let normal = filled(image("normal", float, sampled), &surfaces.normal);
-    let base_color = filled(image("base colour", vk::Format::R8G8B8A8_UNORM, sampled), &surfaces.base_color);
-    let radiance = image("radiance", float, vk::ImageUsageFlags::STORAGE);
-
-    // SAFETY: submissions are waited for before the pass is dropped.
-    let pass = unsafe { ShadePass::new(engine.context(), ShadeOptions::default()) }.unwrap();
-    let packed = PackedLights::new(lights, CAMERA).unwrap();
-    let shape_buffer = engine.host().storage_buffer("shapes", &packed.shapes).unwrap();
-    let light_buffer = engine.host().storage_buffer("lights", &packed.lights).unwrap();
-    let vertex_buffer = engine.host().storage_buffer("light vertices", &packed.vertices).unwrap();
-    let pool = engine.host().descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
-    let of =
-        |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
+    let colors: Vec<_> =
+        texels(SIZE).map(|[_, y]| [200_u8, 180, 150, if y / 16 % 2 == 1 { 255 } else { 0 }]).collect();
+    let (bytes, sampled) = (vk::Format::R8G8B8A8_UNORM, vk::ImageUsageFlags::SAMPLED);
+    let base_color = image(engine, SIZE, bytes, sampled, &colors);
+    let (planes, radiance) = (planes(engine, SIZE, &texel), radiance(engine, SIZE, Vec4::NAN));
+    let lights = LightBuffers::new(engine, lights, CAMERA);
     let resources = ShadeResources {
-        table: engine.table(),
-        lights: Resource::buffer(light_buffer.handle()),
-        light_vertices: Resource::buffer(vertex_buffer.handle()),
-        planes: [
-            (Plane::Position, of(&position)),
-            (Plane::Normal, of(&normal)),
-            (Plane::BaseColor, of(&base_color)),
-        ]
-        .into(),
-        radiance: Resource::StorageImage { view: radiance.view() },
-        shapes: Some(Resource::buffer(shape_buffer.handle())),
-        ..ShadeResources::default()
+        planes: reads(&planes).with(Plane::BaseColor, Some(read(&base_color))),
+        radiance: store(&radiance),
+        ..lights.resources(engine)
     };
-    let frame = ShadeFrame { size: SIZE, lights: packed.summary(), ..ShadeFrame::default() };
-    // SAFETY: the set is new, and what it points to lives until the submission was waited for.
-    unsafe {
-        let set = pool.allocate(pass.set_layout()).unwrap();
-        pass.write_set(set, &resources).unwrap();
-        let recorded = engine.host().submit(|commands| {
-            radiance.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
-            pass.record(commands, set, &frame).unwrap();
-        });
-        recorded.unwrap();
-    }
-    let texels: Vec<[f32; 4]> = radiance.download(Usage::COMPUTE_WRITE).unwrap();
-    texels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect()
+    // SAFETY: `shade_by` waits, and the pass is dropped before the engine.
+    let pass = unsafe { ShadePass::new(engine.context(), ShadeOptions::default()) }.unwrap();
+    shade_by(engine, &pass, &resources, SIZE, &[lights.frame(SIZE, Vec3::ZERO)], Descriptors::Sets);
+    stored_in(&radiance).into_iter().map(|texel| texel.truncate().to_array()).collect()
 }
 
 /// How many texels differ in any bit.

@@ -2,14 +2,10 @@
 //! The picture is the same.
 
 use crate::recorder::field;
-use arealight::PackedLights;
-use arealight::plan::ShadeOptions;
 use arealight_engine::host::{Buffer, Host};
-use arealight_tests::TestEngine;
-use arealight_tests::floor::{Floor, lamps};
-use arealight_vk::{Bound, Descriptors, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources};
-use ash::vk;
-use glam::{DVec3, Vec4};
+use arealight_tests::floor::lamps;
+use arealight_tests::prelude::*;
+use arealight_vk::Bound;
 
 /// A multiple of every device's minStorageBufferOffsetAlignment.
 const SLOT: usize = 1024;

@@ -1,19 +1,12 @@
 //! A whole frame: visibility, shading and the reference, each against its own independent twin.
 
-use arealight::plan::ShadeOptions;
-use arealight::{Effects, Light, Plane, Quality};
-use arealight_engine::host::{Image, Usage};
-use arealight_engine::{EvalPoint, Reference, SceneRenderer};
+use arealight_engine::Reference;
 use arealight_oracle::cubature::Settings;
-use arealight_oracle::material::{Coat, Surface};
-use arealight_oracle::shading::{RelativeLight, truth};
+use arealight_oracle::shading::truth;
 use arealight_oracle::thin_film::ThinFilm;
-use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_tests::frame::scene;
-use arealight_tests::one_pixel::{OnePixel, lamp};
-use arealight_tests::{Comparison, TestEngine, rounding};
+use arealight_tests::prelude::*;
 use glam::camera::rh::proj::vulkan;
-use glam::{DVec3, Vec3, Vec4};
 use half::f16;
 
 const SIZE: [u32; 2] = [64, 40];
@@ -64,7 +57,7 @@ fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
     let films = texels(&g_buffer[Plane::Film]);
     let point = |i: usize| {
         let position = positions[i].truncate().as_dvec3();
-        let material = arealight_oracle::material::Material {
+        let material = Material {
             base_color: colors[i].truncate(),
             metalness: colors[i].w,
             roughness: normals[i].w,
@@ -78,7 +71,7 @@ fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
                 let [weight, ior, thickness, _] = films[i].to_array().map(f64::from);
                 ThinFilm { weight, ior, thickness }
             }),
-            ..arealight_oracle::material::Material::default()
+            ..Material::default()
         };
         let normal = Some(from_octahedron(coats[i].z.into(), coats[i].w.into()));
         let surface = material.coupled_surface();

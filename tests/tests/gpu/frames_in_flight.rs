@@ -1,69 +1,41 @@
 //! Frames by one pass that do not wait for each other: of several sizes, as of a window that is resized, and
 //! recorded on several threads.
 
-use arealight::plan::ShadeOptions;
-use arealight::{Effects, LightSummary, PackedLights, Plane};
 use arealight_engine::Kept;
-use arealight_engine::host::{DescriptorPool, Image, ImageDescription, Usage};
-use arealight_tests::TestEngine;
-use arealight_tests::one_pixel::{BEFORE, lamp};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
-use ash::vk;
-use glam::{DVec3, Vec3};
+use arealight_engine::host::DescriptorPool;
+use arealight_tests::pass::{LightBuffers, planes, radiance, reads, store};
+use arealight_tests::prelude::*;
+
+const CAMERA: Vec3 = Vec3::new(0.0, -1.0, 1.0);
 
 /// What a host makes anew when its window has another size, with a floor in the G-buffer.
 struct Images {
     size: [u32; 2],
     radiance: Image,
-    _g_buffer: [Image; 3],
+    _planes: Planes<Option<Image>>,
     set: vk::DescriptorSet,
     _pool: DescriptorPool,
 }
 
 impl Images {
-    fn new(engine: &TestEngine, pass: &ShadePass, buffers: [vk::Buffer; 2], size: [u32; 2]) -> Self {
-        let host = engine.host();
-        let image = |name, usage| {
-            let format = vk::Format::R32G32B32A32_SFLOAT;
-            host.image(&ImageDescription { name, extent: size, layers: 1, format, usage }).unwrap()
-        };
-        let texels = |texel: &dyn Fn(f32, f32) -> [f32; 4]| -> Vec<[f32; 4]> {
-            (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| texel(x as f32, y as f32))).collect()
-        };
-        let sampled = |name, texels: &[[f32; 4]]| {
-            let image = image(name, vk::ImageUsageFlags::SAMPLED);
-            image.upload(texels, Usage::COMPUTE_READ).unwrap();
-            image
-        };
-        let position = sampled("position", &texels(&|x, y| [0.1 * x - 0.4, 0.1 * y - 0.4, 0.0, 1.0]));
-        let normal = sampled("normal", &texels(&|_, _| [0.0, 0.0, 1.0, 0.5]));
-        let base_color = sampled("base colour", &texels(&|_, _| [0.8, 0.6, 0.4, 0.25]));
-        let radiance = image("radiance", vk::ImageUsageFlags::STORAGE);
-        radiance.upload(&texels(&|_, _| BEFORE.to_array()), Usage::COMPUTE_WRITE).unwrap();
-
-        let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
-        let of =
-            |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
-        let resources = ShadeResources {
-            table: engine.table(),
-            lights: Resource::buffer(buffers[0]),
-            light_vertices: Resource::buffer(buffers[1]),
-            planes: [
-                (Plane::Position, of(&position)),
-                (Plane::Normal, of(&normal)),
-                (Plane::BaseColor, of(&base_color)),
-            ]
-            .into(),
-            radiance: Resource::StorageImage { view: radiance.view() },
-            ..ShadeResources::default()
-        };
+    fn new(engine: &TestEngine, pass: &ShadePass, lights: &LightBuffers, size: [u32; 2]) -> Self {
+        let planes = planes(engine, size, &|plane, [x, y]| match plane {
+            Plane::Position => Some(Vec4::new(0.1 * x as f32 - 0.4, 0.1 * y as f32 - 0.4, 0.0, 1.0)),
+            Plane::Normal => Some(Vec4::new(0.0, 0.0, 1.0, 0.5)),
+            Plane::BaseColor => Some(Vec4::new(0.8, 0.6, 0.4, 0.25)),
+            _ => None,
+        });
+        let radiance = radiance(engine, size, BEFORE);
+        let resources =
+            ShadeResources { planes: reads(&planes), radiance: store(&radiance), ..lights.resources(engine) };
+        let pool = engine.host().descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
         // SAFETY: the set is new; tests wait before the images go.
         let set = unsafe {
             let set = pool.allocate(pass.set_layout()).unwrap();
             pass.write_set(set, &resources).unwrap();
             set
         };
-        Self { size, radiance, _g_buffer: [position, normal, base_color], set, _pool: pool }
+        Self { size, radiance, _planes: planes, set, _pool: pool }
     }
 
     fn picture(&self) -> Vec<[f32; 4]> {
@@ -132,17 +104,10 @@ fn frames_of_other_sizes_are_recorded_while_one_is_in_flight() {
     let Some(engine) = TestEngine::new() else { return };
     let (host, device) = (engine.host(), engine.host().device());
     let pass: &Kept<ShadePass> = &engine.shade_pass(ShadeOptions::default()).unwrap();
-    let packed = PackedLights::new(&[lamp()], DVec3::ZERO).unwrap();
-    let lights = host.storage_buffer("lights", &packed.lights).unwrap();
-    let vertices = host.storage_buffer("vertices", &packed.vertices).unwrap();
-    let images = |size| Images::new(&engine, pass, [lights.handle(), vertices.handle()], size);
+    let lights = LightBuffers::new(&engine, &[lamp()], DVec3::ZERO);
+    let images = |size| Images::new(&engine, pass, &lights, size);
     let record = |commands: vk::CommandBuffer, images: &Images, size: [u32; 2]| {
-        let frame = ShadeFrame {
-            size,
-            camera: Vec3::new(0.0, -1.0, 1.0),
-            lights: packed.summary(),
-            ..ShadeFrame::default()
-        };
+        let frame = lights.frame(size, CAMERA);
         // SAFETY: the commands are being recorded, with a set of images of at least this size.
         unsafe { pass.record(commands, images.set, &frame) }.unwrap();
     };
@@ -238,27 +203,19 @@ fn threads_record_with_one_pass_and_make_its_pipelines_at_once() {
     const FRAMES: u32 = 30;
     let Some(engine) = TestEngine::new() else { return };
     let (host, device) = (engine.host(), engine.host().device());
-    let packed = PackedLights::new(&[lamp()], DVec3::ZERO).unwrap();
-    let lights = host.storage_buffer("lights", &packed.lights).unwrap();
-    let vertices = host.storage_buffer("vertices", &packed.vertices).unwrap();
-    let buffers = [lights.handle(), vertices.handle()];
+    let lights = LightBuffers::new(&engine, &[lamp()], DVec3::ZERO);
     // Each thread asks for the pipelines of three sets of effects, in an order of its own: the first to ask
     // makes them
     let added = [Effects::empty(), Effects::TWO_SIDED, Effects::POLYGON];
     let frame_of = |size, index: u32| {
-        let summary = packed.summary();
-        let effects = summary.effects | added[index as usize % added.len()];
-        ShadeFrame {
-            size,
-            camera: Vec3::new(0.0, -1.0, 1.0),
-            lights: LightSummary { effects, ..summary },
-            ..ShadeFrame::default()
-        }
+        let mut frame = lights.frame(size, CAMERA);
+        frame.lights.effects |= added[index as usize % added.len()];
+        frame
     };
     let sizes = [[8, 8], [16, 4], [3, 5], [9, 2]];
     let kept = engine.shade_pass(ShadeOptions::default()).unwrap();
     let alone = sizes.map(|size| {
-        let images = Images::new(&engine, &kept, buffers, size);
+        let images = Images::new(&engine, &kept, &lights, size);
         // SAFETY: the commands are being recorded, with a set of images of this size.
         host.submit(|commands| unsafe { kept.record(commands, images.set, &frame_of(size, 0)) }.unwrap())
             .unwrap();
@@ -267,7 +224,7 @@ fn threads_record_with_one_pass_and_make_its_pipelines_at_once() {
 
     // SAFETY: it is dropped when nothing is pending.
     let pass = &unsafe { ShadePass::new(engine.context(), ShadeOptions::default()) }.unwrap();
-    let made = sizes.map(|size| Images::new(&engine, pass, buffers, size));
+    let made = sizes.map(|size| Images::new(&engine, pass, &lights, size));
     let sets = made.each_ref().map(|images| (images.set, images.size));
     let (family, frame_of) = (host.queue_family(), &frame_of);
     let recorded: Vec<Recorded<'_>> = std::thread::scope(|scope| {

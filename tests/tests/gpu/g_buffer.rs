@@ -1,18 +1,14 @@
 //! G-buffers of other layouts: the same surface in, the same radiance out.
 
-use arealight::plan::{GBufferLayout, ShadeOptions};
-use arealight::{Effects, Plane};
 use arealight_capi::{
     ArealightImage, ArealightPassOptions, ArealightResult, arealight_pass_create_with_module,
     arealight_pass_destroy,
 };
-use arealight_tests::TestEngine;
 use arealight_tests::c_library::{CLibrary, DeviceMemory, c_lamp, good, refused};
 use arealight_tests::kernel::shade_with_bridge;
-use arealight_tests::one_pixel::{OnePixel, lamp};
-use arealight_vk::{Error, ShadePass, ShadePassInfo};
+use arealight_tests::prelude::*;
+use arealight_vk::Error;
 use ash::vk::Format;
-use glam::{Vec3, Vec4};
 use std::ptr::null_mut;
 
 const CAMERA: Vec3 = Vec3::new(0.0, -1.0, 1.0);

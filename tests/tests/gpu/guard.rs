@@ -3,13 +3,11 @@
 //! clamp that hides a NaN.
 
 use arealight::kernels::{Kernel, SHADE, constant};
-use arealight::{Effects, FormFactor, Horizon, SpecularLobes};
+use arealight_tests::Path;
 use arealight_tests::kernel::UNGUARDED;
+use arealight_tests::prelude::*;
 use arealight_tests::spirv::{tool, words};
-use arealight_tests::{Cases, Level, Path, TestEngine, glossy_surface, point};
 use arealight_tool_kernels::kernels::EVAL;
-use arealight_vk::Resource;
-use glam::DVec3;
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::Op;
 use std::collections::{HashMap, HashSet};
@@ -191,7 +189,7 @@ fn what_is_not_finite_gives_zero_to_the_bit() {
     let Some(engine) = TestEngine::new() else { return };
     let lights = poisoned();
     let square = lights[0].map(|v| DVec3::new(v[0].into(), v[1].into(), v[2].into()));
-    let surface = arealight_oracle::material::Surface { diffuse_albedo: DVec3::ONE, ..glossy_surface(0.3) };
+    let surface = Surface { diffuse_albedo: DVec3::ONE, ..glossy_surface(0.3) };
     let mut given = Cases::new(&vec![point(surface, DVec3::Z, square.into(), true); lights.len()]);
     given.vertices = lights.iter().flatten().map(|v| [v[0], v[1], v[2] - 2.0, 0.0]).collect();
     let levels = Level::of(&[Path::Quad, Path::Polygon], &[Horizon::Cosine, Horizon::Both]);

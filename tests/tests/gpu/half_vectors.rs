@@ -3,22 +3,20 @@
 
 use crate::coat_tiles::pictures;
 use crate::properties::on_a_circle;
-use arealight::{Effects, Horizon, Light, LightShape, Quality, SpecularLobes};
-use arealight_engine::EvalPoint;
-use arealight_oracle::material::{Anisotropy, Surface};
+use arealight_oracle::material::Anisotropy;
+use arealight_tests::Path;
 use arealight_tests::frame::scene;
-use arealight_tests::materials::{shape_lights, step_within_rounding, under_polygon};
-use arealight_tests::{Cases, Comparison, Level, Path, Random, TestEngine, point, rounding};
-use glam::{DQuat, DVec3, Vec3, Vec4};
+use arealight_tests::materials::{step_within_rounding, under_shapes};
+use arealight_tests::prelude::*;
 
 const COUNT: usize = 2000;
 
 const LEVEL: Quality = Quality {
     specular_lobes: SpecularLobes::HalfVectors,
-    form_factor: arealight::FormFactor::Exact,
+    form_factor: FormFactor::Exact,
     horizon: Horizon::Cosine,
-    lobes: arealight::Lobes::Table,
-    footprint: arealight::Footprint::Round,
+    lobes: Lobes::Table,
+    footprint: Footprint::Round,
 };
 
 /// Metals of every roughness, every third stretched along a tangent.
@@ -182,7 +180,6 @@ fn a_light_that_is_cut_in_two_sends_what_it_did() {
 #[test]
 fn light_from_below_and_other_kinds_of_lights_are_as_ever() {
     let Some(engine) = TestEngine::new() else { return };
-    let mut random = Random::new(4);
     // Below the surface nothing is reflected, whatever the view
     let below: Vec<EvalPoint> = points(5)
         .into_iter()
@@ -200,13 +197,7 @@ fn light_from_below_and_other_kinds_of_lights_are_as_ever() {
     assert!(answers.iter().filter(|answer| answer.max_element() > 1e-4).count() > COUNT / 20);
 
     // Curved outlines have the fitted lobe
-    let shapes: Vec<EvalPoint> = points(6)
-        .into_iter()
-        .take(200)
-        .flat_map(|EvalPoint { surface, position, normal, view, .. }| {
-            shape_lights(&mut random).map(|light| EvalPoint { surface, position, normal, view, light })
-        })
-        .collect();
+    let shapes = under_shapes(7, points(6).into_iter().take(200));
     let by = |quality| engine.eval_shapes(&shapes, quality).unwrap();
     assert_eq!(by(LEVEL), by(Quality::default()));
     assert!(by(LEVEL).iter().filter(|answer| answer.x > 0.0).count() > 100, "they are lit");

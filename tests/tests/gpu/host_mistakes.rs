@@ -1,16 +1,10 @@
 //! Devices that lack something, images that are gone, and names for debuggers: on devices that lie about
 //! themselves, so that every answer can be had on any.
 
-use arealight::plan::ShadeOptions;
-use arealight::{Effects, LightSummary};
 use arealight_engine::host::Location;
-use arealight_tests::TestEngine;
+use arealight_tests::prelude::*;
 use arealight_tool_kernels::kernels::VISIBILITY;
-use arealight_vk::{
-    ComputePass, Context, Error, LightTextures, Resource, ShadeFrame, ShadePass, TableFormat, TableImage,
-};
-use ash::vk;
-
+use arealight_vk::{ComputePass, Context, Error, LightTextures, TableFormat, TableImage};
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
 
@@ -98,7 +92,7 @@ fn what_a_device_lacks_is_named() {
 
     let formats = (c"vkGetPhysicalDeviceFormatProperties", no_format as *const c_void);
     let without = context(&engine, &lying_instance(&engine, &[limits, formats])).unwrap();
-    let size = arealight::PyramidSize::new(64).unwrap();
+    let size = PyramidSize::new(64).unwrap();
     // SAFETY: nothing is made.
     let error = unsafe { LightTextures::new(&without, size, 1) }.unwrap_err();
     assert!(matches!(error, Error::MissingFeature { needed_by: "light textures", .. }), "{error}");
@@ -114,7 +108,7 @@ fn a_set_that_points_at_a_destroyed_table_is_refused() {
     unsafe {
         let pass = ComputePass::new(engine.context(), &arealight_tool_kernels::kernels::EVAL, &[]).unwrap();
         let mut table =
-            TableImage::new(engine.context(), &arealight::LightTable::ggx(), TableFormat::default()).unwrap();
+            TableImage::new(engine.context(), &LightTable::ggx(), TableFormat::default()).unwrap();
         let memory = host.with_allocator(|allocator| table.allocate(allocator)).unwrap();
         let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
         let set = pool.allocate(pass.set_layout()).unwrap();
@@ -184,7 +178,7 @@ fn objects_are_named_and_commands_labelled_where_the_host_can() {
     let instance = lying_instance(&engine, &[(c"vkGetDeviceProcAddr", find as *const c_void)]);
     // SAFETY: the instance's functions for debuggers are the ones above.
     let context = unsafe { engine.context().clone().with_debug_utils(&instance) };
-    let table = arealight::LightTable::ggx();
+    let table = LightTable::ggx();
     // SAFETY: the submission is waited for before anything is dropped; the staging buffer holds the table.
     unsafe {
         let mut image = TableImage::new(&context, &table, TableFormat::default()).unwrap();

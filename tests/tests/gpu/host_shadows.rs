@@ -2,14 +2,10 @@
 //! blocks a ray, and reads a set of theirs.
 
 use crate::shadows::{flat, options, surfaces, symmetric_lights};
-use arealight::plan::{ShadeOptions, ShadowFilter};
-use arealight_engine::host::{ImageDescription, Usage};
-use arealight_tests::TestEngine;
+use arealight::plan::ShadowFilter;
 use arealight_tests::kernel::{shade_with_visibility, shadow_rays_with_bridge};
+use arealight_tests::prelude::*;
 use arealight_tests::shadow_patch::{PatchPasses, SIDE, ShadowPatch};
-use arealight_vk::Resource;
-use ash::vk;
-use glam::Vec3;
 
 #[test]
 fn a_host_says_itself_what_blocks() {

@@ -1,17 +1,11 @@
 //! Lights far larger than their distance, and lights in the plane of the point: which side of its plane a
 //! point is on is told by the plane in the world, not by vertices, whose heights drown in their lengths.
 
-use arealight::{Effects, FormFactor, Horizon, Light, LightShape, LightTexture, Quality};
 use arealight_benches::pictures;
-use arealight_engine::{EvalPoint, Reference, SceneRenderer};
-use arealight_oracle::material::Surface;
+use arealight_engine::Reference;
 use arealight_oracle::stream::Stream;
-use arealight_oracle::texture::Texture;
-use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_tests::materials::polygon_twin;
-use arealight_tests::scenes::{lambert, scene_of, without_textures};
-use arealight_tests::{Comparison, TestEngine};
-use glam::{DVec2, DVec3, Vec3};
+use arealight_tests::prelude::*;
 use std::sync::Arc;
 
 const CASES: u64 = 120;

@@ -1,16 +1,13 @@
 //! How many lights a frame has, said by a buffer that the GPU wrote.
 
 use arealight::gpu::LightCounts;
-use arealight::plan::ShadeOptions;
-use arealight_tests::TestEngine;
-use arealight_tests::floor::{Floor, lamps, pixels};
-use arealight_vk::{Descriptors, Resource, ShadeResources};
-use glam::{DVec3, Vec4};
+use arealight_tests::floor::{lamps, pixels};
+use arealight_tests::prelude::*;
 
 /// The largest difference from what these numbers of lights of the buffers give.
 fn worst(floor: &Floor<'_>, counts: LightCounts, found: &[Vec4]) -> f64 {
     let (lights, shapes) = (counts.light_count as usize, counts.shape_count as usize);
-    let packed = &floor.lights;
+    let packed = &floor.lights.packed;
     let shaded: Vec<u32> =
         packed.order.iter().take(lights).chain(packed.shape_order.iter().take(shapes)).copied().collect();
     let error = |(pixel, found): ([u32; 2], &Vec4)| {
@@ -24,7 +21,7 @@ fn worst(floor: &Floor<'_>, counts: LightCounts, found: &[Vec4]) -> f64 {
 fn counts_of_a_buffer_are_how_many_lights_are_shaded() {
     let Some(engine) = TestEngine::new() else { return };
     let floor = Floor::new(&engine, &lamps());
-    let summary = floor.lights.summary();
+    let summary = floor.lights.packed.summary();
     assert_eq!([summary.light_count, summary.quad_count, summary.shape_count], [4, 4, 3]);
     let most = LightCounts { light_count: 4, shape_count: 3, quad_count: 4 };
     let options = ShadeOptions { light_counts: true, ..ShadeOptions::default() };

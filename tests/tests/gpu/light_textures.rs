@@ -2,11 +2,10 @@
 //! recorded.
 
 use crate::recorder::field;
-use arealight::{PyramidSize, TexturePart};
+use arealight::TexturePart;
 use arealight_engine::{Passes, TextureArray};
-use arealight_tests::TestEngine;
-use arealight_vk::{Error, LightTextures, Resource, TextureUpdate};
-use ash::vk;
+use arealight_tests::prelude::*;
+use arealight_vk::{Error, LightTextures, TextureUpdate};
 
 fn small() -> PyramidSize {
     PyramidSize::new(64).unwrap()

@@ -1,8 +1,8 @@
 //! The cells of a table's horizons, which tiles are classified with, hold every lookup.
 
+use arealight::TableSample;
 use arealight::table::{LobeHorizon, mirror_frame};
-use arealight::{SpecularLobes, TableSample};
-use glam::{DMat3, DVec3};
+use arealight_tests::prelude::*;
 
 /// The last row of the transform into a lobe's cosine space: along the normal of the lobe's horizon.
 fn lobe_height(inverse: DMat3) -> DVec3 {
@@ -34,7 +34,7 @@ struct Lookup {
 
 /// The built-in table at each of [`views`].
 fn looked_up(lobes: SpecularLobes) -> Vec<Lookup> {
-    let table = arealight::LightTable::ggx();
+    let table = LightTable::ggx();
     let horizons = table.lobe_horizons(lobes);
     let cells = table.size() as usize - 1;
     let view = |(roughness, cos_view): (f64, f64)| {

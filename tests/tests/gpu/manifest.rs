@@ -1,15 +1,16 @@
 //! What kernels say of themselves is what another reader finds in their modules; every offset of every
 //! structure that the CPU writes; what pruned modules bind.
 
-mod reflection;
-mod structures;
-
+use arealight::TileClass;
 use arealight::kernels::{self, Access, Binding, BindingKind, Kernel, constant};
-use arealight::plan::{ShadeOptions, shade_specialization, shade_tiles_specialization};
-use arealight::{Effects, LightSummary, TileClass};
+use arealight::plan::{shade_specialization, shade_tiles_specialization};
+use arealight_tests::prelude::*;
 use arealight_tool_kernels as tool;
 use reflection::{bound_variables, module, parsed, reflected};
 use rspirv::dr::Module;
+
+mod reflection;
+mod structures;
 
 /// What a kernel binds, without what it has for other kernels of its pass.
 fn used(kernel: &Kernel) -> impl Iterator<Item = &Binding> {

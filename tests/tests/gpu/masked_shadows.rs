@@ -1,13 +1,11 @@
 //! Shadows of what is cut out or blended: by a texture, a factor and vertex colours, against Monte Carlo.
 
-use arealight::plan::{ShadeOptions, ShadowFilter, ShadowHistory};
-use arealight::{Effects, Light, LightShape};
-use arealight_engine::{Reference, SceneRenderer};
-use arealight_scene::{Camera, Image, Scene, SceneBuffers, Texture, Wrap};
-use arealight_tests::TestEngine;
-use arealight_tests::scenes::{lambert, scene_of, without_textures};
+use arealight::plan::{ShadowFilter, ShadowHistory};
+use arealight_engine::Reference;
+use arealight_scene::{Image, Texture, Wrap};
+use arealight_tests::prelude::*;
 use arealight_tool_kernels::gpu::GpuMaterial;
-use glam::{DVec3, Vec2, Vec3, Vec4};
+use glam::Vec2;
 
 const SIZE: [u32; 2] = [48, 48];
 

@@ -1,12 +1,8 @@
 //! Frames of every material: with tiles and without, and beside the Monte Carlo reference.
 
-use arealight::plan::{ShadeOptions, TileOptions};
-use arealight::{Effects, Horizon, Light, LightShape, Quality};
 use arealight_benches::materials::{self, MaterialErrors, Options};
-use arealight_scene::Scene;
-use arealight_tests::TestEngine;
-use arealight_tests::frame::{scene, with_renderer};
-use glam::{DVec3, Vec3, Vec4};
+use arealight_tests::frame::scene;
+use arealight_tests::prelude::*;
 
 #[test]
 fn frames_of_materials_are_the_same_with_tiles() {
@@ -74,7 +70,7 @@ fn assert_tiles(name: &str) {
 /// The errors of a scene's materials at a small size.
 fn errors(engine: &TestEngine, scene: &Scene) -> MaterialErrors {
     let options = Options { size: [160, 90], samples: 256 };
-    materials::run(engine.host(), &arealight::LightTable::ggx(), scene, &options, &|_| {}).unwrap()
+    materials::run(engine.host(), &LightTable::ggx(), scene, &options, &|_| {}).unwrap()
 }
 
 #[test]

@@ -1,14 +1,10 @@
 //! Meshes of emitters, several faces that are one light: against their faces, against spheres that they are
 //! nearly, in frames and against the Monte Carlo reference.
 
-use arealight::{Effects, Horizon, Light, LightShape, LightTable, Quality};
-use arealight_engine::{EvalPoint, Reference, SceneRenderer};
-use arealight_scene::{Camera, SceneBuffers};
+use arealight_engine::Reference;
+use arealight_tests::Path;
 use arealight_tests::lobe::{Lobe, Seen};
-use arealight_tests::{
-    Cases, Comparison, Level, Path, Random, TestEngine, glossy_surface, lambert_surface, point, rounding,
-};
-use glam::{DVec3, Vec3};
+use arealight_tests::prelude::*;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -130,10 +126,8 @@ fn far_meshes_keep_relative_precision(engine: &TestEngine, level: Level) {
     let center = DVec3::new(3e2, 1e2, 9e2);
     let light = Light { radiance: Vec3::ONE, ..cube(center, 1.0) };
     let given = Cases::new(&[EvalPoint { light, ..point(lambert_surface(), DVec3::Z, Vec::new(), false) }]);
-    let difference = Level {
-        quality: Quality { form_factor: arealight::FormFactor::Difference, ..level.quality },
-        ..level
-    };
+    let difference =
+        Level { quality: Quality { form_factor: FormFactor::Difference, ..level.quality }, ..level };
     let found = engine.factors(&given, Effects::DIFFUSE, difference)[0];
     let direction = center.normalize_or_zero();
     // Its projected area, at the distance of the center: (2 / 950)^2 off

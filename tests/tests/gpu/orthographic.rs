@@ -1,15 +1,10 @@
 //! Scenes through an orthographic camera: what it sees, and what it is shaded like, with shadows and without.
 //! The twin of each is a perspective camera that sees as much.
 
-use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
-use arealight::{Light, LightShape, Plane, Quality};
-use arealight_engine::host::Usage;
-use arealight_engine::{EngineError, EvalPoint, Reference, SceneRenderer};
-use arealight_oracle::material::Material;
-use arealight_scene::{Camera, Scene, SceneBuffers};
-use arealight_tests::TestEngine;
-use arealight_tests::scenes::{box_of, lambert, scene_of, without_textures};
-use glam::{DVec3, Vec3};
+use arealight::plan::{ShadowFilter, ShadowHistory};
+use arealight_engine::{EngineError, Reference};
+use arealight_tests::prelude::*;
+use arealight_tests::scenes::box_of;
 use std::time::Duration;
 
 const SIZE: [u32; 2] = [48, 32];

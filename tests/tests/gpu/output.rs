@@ -1,12 +1,9 @@
 //! Where radiance goes: overwritten or added, in one image or apart, in 32 bits or 16.
 
-use arealight::plan::{Output, RadianceFormat, ShadeOptions};
-use arealight::{Effects, Light, Plane};
-use arealight_tests::TestEngine;
-use arealight_tests::one_pixel::{BEFORE, OnePixel, lamp};
-use arealight_vk::{Error, Resource, ShadePass, ShadeResources};
+use arealight::plan::RadianceFormat;
+use arealight_tests::prelude::*;
+use arealight_vk::Error;
 use ash::vk::{self, Handle as _};
-use glam::{Vec3, Vec4};
 use half::f16;
 
 const CAMERA: Vec3 = Vec3::new(0.0, -1.0, 1.0);

@@ -1,13 +1,9 @@
 //! Frames in parts, as drivers with a watchdog need them: the picture is that of the whole frame, to the bit.
 
-use arealight::plan::{ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
-use arealight::{Effects, LightSummary};
-use arealight_engine::SceneRenderer;
-use arealight_scene::{Scene, SceneBuffers};
-use arealight_tests::TestEngine;
+use arealight::plan::{ShadowFilter, ShadowHistory};
 use arealight_tests::frame::{bits, scene};
-use arealight_vk::{Error, ShadeFrame, ShadePass};
-use glam::Vec3;
+use arealight_tests::prelude::*;
+use arealight_vk::Error;
 
 /// No multiple of a workgroup's side: five rows of workgroups.
 const SIZE: [u32; 2] = [61, 37];
@@ -45,7 +41,7 @@ fn a_frame_in_parts_is_the_same_picture() {
     let Some(engine) = TestEngine::new() else { return };
     let scene = scene("sweep.glb");
     let draw: Draw<'_> = &|renderer, _| {
-        renderer.shade(scene.effects(), arealight::Quality::default()).unwrap();
+        renderer.shade(scene.effects(), Quality::default()).unwrap();
     };
     check(&engine, &scene, draw, &|_, _| ());
 }

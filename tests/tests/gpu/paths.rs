@@ -1,11 +1,8 @@
 //! The paths through a quad's code that a device counts, in a scene where they are known.
 
-use arealight::{Light, LightShape};
 use arealight_benches::model::{Counts, LobePaths, ModelError, Paths, count_scene};
-use arealight_scene::{Camera, Scene};
-use arealight_tests::TestEngine;
 use arealight_tests::frame::scene;
-use glam::{DVec3, Vec3};
+use arealight_tests::prelude::*;
 
 const SIZE: [u32; 2] = [64, 40];
 

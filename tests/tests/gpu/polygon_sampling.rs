@@ -3,9 +3,7 @@
 
 use arealight_oracle::polygon::{above_horizon, form_factor};
 use arealight_tests::kernel::POLYGON_SAMPLING;
-use arealight_tests::{Random, TestEngine};
-use arealight_vk::Resource;
-use glam::DVec3;
+use arealight_tests::prelude::*;
 use std::f64::consts::PI;
 
 /// Draws of a polygon.

@@ -5,8 +5,7 @@ use arealight::table::{TableSample, mirror_frame};
 use arealight_oracle::frame::SurfaceFrame;
 use arealight_oracle::ggx::Ggx;
 use arealight_tests::kernel::Function;
-use arealight_tests::{Comparison, Random, TestEngine};
-use glam::{DMat3, DVec3};
+use arealight_tests::prelude::*;
 
 type Arguments = [[f32; 4]; 3];
 
@@ -94,7 +93,7 @@ fn frames_are_orthonormal_whatever_comes_in() {
             view.add(found[1][3].into(), direction.x, 4e-7, place);
             let (n, v) = (normal.as_vec3(), to_viewer.normalize_or(normal).as_vec3());
             let n = n.normalize_or(n);
-            let tangent = (v - n * n.dot(v)).normalize_or(glam::Vec3::X);
+            let tangent = (v - n * n.dot(v)).normalize_or(Vec3::X);
             one_pass.add(tangent.as_dvec3().dot(n.as_dvec3()), 0.0, 3e-7, String::new);
         }
     }
@@ -152,7 +151,7 @@ fn largest_entry(matrix: &DMat3) -> f64 {
 #[test]
 fn the_table_is_looked_up_as_in_float64() {
     let Some(engine) = TestEngine::new() else { return };
-    let table = arealight::LightTable::ggx();
+    let table = LightTable::ggx();
     let mut random = Random::new(53);
     let given: Vec<Arguments> = (0..20_000)
         .map(|index| {

@@ -4,19 +4,15 @@
 //!
 //! A test takes many properties: with a software driver a pipeline costs more than all that it computes here.
 
+use arealight_tests::prelude::*;
+use arealight_tests::{Path, Property};
+use relations::{HOLE, RELATIONS};
+use std::sync::LazyLock;
+
 mod boxes;
 mod horizons;
 mod relations;
 mod switches;
-
-use arealight::{Effects, Horizon, LightTable};
-use arealight_engine::EvalPoint;
-use arealight_tests::{
-    Cases, Comparison, Level, Path, Property, Random, TestEngine, glossy_surface, lambert_surface, point,
-};
-use glam::DVec3;
-use relations::{HOLE, RELATIONS};
-use std::sync::LazyLock;
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
@@ -43,7 +39,7 @@ pub fn on_a_circle(polygon: &[DVec3], center: DVec3) -> Vec<DVec3> {
 
 fn with_outline(given: &EvalPoint, vertices: Vec<DVec3>) -> EvalPoint {
     let mut other = given.clone();
-    other.light.shape = arealight::LightShape::Polygon(vertices);
+    other.light.shape = LightShape::Polygon(vertices);
     other
 }
 

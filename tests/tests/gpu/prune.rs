@@ -1,11 +1,11 @@
 //! Modules without what specialisation constants rule out, held against whole ones.
 
+use arealight::TileClass;
 use arealight::kernels::{self, Kernel, constant};
-use arealight::plan::{ShadeOptions, shade_specialization};
-use arealight::{Effects, Footprint, Horizon, LightSummary, Lobes, Quality, SpecularLobes, TileClass};
-use arealight_tests::TestEngine;
-use arealight_tests::frame::{bits, scene, with_renderer};
+use arealight::plan::shade_specialization;
+use arealight_tests::frame::{bits, scene};
 use arealight_tests::kernel::BRANCHES;
+use arealight_tests::prelude::*;
 use arealight_tests::spirv::{tool, words};
 use arealight_vk::prune;
 use std::collections::{BTreeMap, BTreeSet};
@@ -68,7 +68,7 @@ fn branches_that_stay_are_those_that_are_taken() {
     let arguments: Vec<u32> = (0..8).collect();
     let run = |engine: &TestEngine, specialization: &[(u32, u32)]| -> Vec<[u32; 10]> {
         let buffer = engine.host().storage_buffer("arguments", &arguments).unwrap();
-        let inputs = [arealight_vk::Resource::buffer(buffer.handle())];
+        let inputs = [Resource::buffer(buffer.handle())];
         engine.dispatch(&BRANCHES, specialization, &inputs, arguments.len())
     };
     let mut different = BTreeSet::new();

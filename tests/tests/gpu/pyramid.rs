@@ -1,11 +1,10 @@
 //! The prefilter on the GPU, every level of it, against float64: images of any size, repeated and in part;
 //! what is black, blinding or not a number; and layers that are left alone.
 
-use arealight::{Light, LightShape, LightTexture, PyramidSize, TexturePart, Wrap};
+use arealight::{TexturePart, Wrap};
 use arealight_engine::{Engine, EngineError, SourceImage, SourceTexels};
-use arealight_oracle::texture::{Pyramid, Texture};
-use arealight_tests::{Comparison, Random, TestEngine};
-use glam::{DVec2, DVec3, Vec3};
+use arealight_oracle::texture::Pyramid;
+use arealight_tests::prelude::*;
 
 /// The largest number of sixteen bits.
 const LARGEST: f64 = 65504.0;

@@ -1,16 +1,10 @@
 //! How far lights are of any matter, by points outside.
 
 use arealight::reach::{self, DIFFUSE_DENSITY};
-use arealight::{
-    Light, LightShape, LightTable, LightTexture, PackedLights, Quality, SpecularLobes, TubeEnds,
-};
-use arealight_oracle::material::{Material, Surface};
-use arealight_oracle::shading::{RelativeLight, ltc, shape_ltc_on, shape_seen_from};
+use arealight_oracle::shading::{ltc, shape_ltc_on, shape_seen_from};
 use arealight_oracle::stream::Stream;
-use arealight_tests::TestEngine;
 use arealight_tests::kernel::LIGHT_REACH;
-use arealight_vk::Resource;
-use glam::{DVec2, DVec3, Vec3};
+use arealight_tests::prelude::*;
 use std::sync::LazyLock;
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);

@@ -1,14 +1,11 @@
 //! A host's mistakes have typed answers that name the field; and what the recorder publishes is what it does.
 
 use arealight::kernels::{self, SHADE, TILE_BINDINGS, constant};
-use arealight::plan::ShadeOptions;
 use arealight::table::LAYERS;
-use arealight::{Effects, LightSummary};
-use arealight_tests::TestEngine;
+use arealight_tests::prelude::*;
 use arealight_tool_kernels::kernels::EVAL;
-use arealight_vk::{ComputePass, Error, Resource, ShadeFrame, ShadePass, TableFormat, TableImage};
-use ash::vk;
-use glam::{Mat4, Vec3};
+use arealight_vk::{ComputePass, Error, TableFormat, TableImage};
+use glam::Mat4;
 
 pub(crate) fn field(error: &Error) -> &'static str {
     match error {
@@ -140,7 +137,7 @@ fn accesses_and_pool_sizes_say_what_the_manifest_says() {
 #[test]
 fn a_table_image_without_memory_is_refused() {
     let Some(engine) = TestEngine::new() else { return };
-    let table = arealight::LightTable::ggx();
+    let table = LightTable::ggx();
     // SAFETY: No submission uses it.
     let image = unsafe { TableImage::new(engine.context(), &table, TableFormat::Rgba16Float) }.unwrap();
     let size = u64::from(table.size());

@@ -1,12 +1,9 @@
 //! Light that facets reflect more than once, on the GPU: against the float64 twin, and where all of it has to
 //! come back.
 
-use arealight::{Effects, Lobes, Quality};
-use arealight_engine::EvalPoint;
-use arealight_oracle::material::{Anisotropy, Interface, Surface};
-use arealight_tests::materials::{lobe_qualities, under_polygon};
-use arealight_tests::{Random, TestEngine, rounding};
-use glam::DVec3;
+use arealight_oracle::material::{Anisotropy, Interface};
+use arealight_tests::materials::lobe_qualities;
+use arealight_tests::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
 /// Metals and dielectrics, every third stretched along a tangent, every fourth with a coupled diffuse lobe.

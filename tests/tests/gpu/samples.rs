@@ -3,18 +3,11 @@
 
 use crate::recorder::field;
 use arealight::kernels::read_samples;
-use arealight::plan::{Output, ShadeOptions};
-use arealight::{LightTable, Plane};
-use arealight_oracle::material::Surface;
-use arealight_tests::TestEngine;
-use arealight_tests::floor::{
-    CAMERA, Floor, SIZE, floor_material, lamps, looking_at_floor, one_light, pixels,
-};
+use arealight_tests::floor::{CAMERA, SIZE, floor_material, lamps, looking_at_floor, one_light, pixels};
 use arealight_tests::kernel::shade_with_bridge;
 use arealight_tests::multisampled::{Multisampled, Texel};
-use arealight_tests::one_pixel::BEFORE;
-use arealight_vk::{Descriptors, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources};
-use glam::{DMat4, DVec2, DVec3, DVec4, Vec4};
+use arealight_tests::prelude::*;
+use glam::{DMat4, DVec4};
 
 /// What a sample shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,7 +91,7 @@ enum Shading {
 struct Oracle {
     table: LightTable,
     surface: Surface,
-    floor: Vec<arealight::Light>,
+    floor: Vec<Light>,
 }
 
 impl Oracle {

@@ -2,14 +2,9 @@
 //! load them wrongly fail.
 
 use arealight::table::LAYERS;
-use arealight_engine::host::{ImageDescription, Usage};
-use arealight_oracle::material::Surface;
-use arealight_oracle::shading::{RelativeLight, ltc};
+use arealight_oracle::shading::ltc;
 use arealight_tests::kernel::SELF_TEST;
-use arealight_tests::{TestEngine, point};
-use arealight_vk::Resource;
-use ash::vk;
-use glam::DVec3;
+use arealight_tests::prelude::*;
 
 const SOURCE: &str = include_str!("../../../shaders/include/arealight/self_test.glsl");
 
@@ -30,7 +25,7 @@ fn array<const N: usize>(name: &str) -> Vec<[f64; N]> {
 
 #[test]
 fn answers_are_those_of_float64() {
-    let table = arealight::LightTable::ggx();
+    let table = LightTable::ggx();
     let views = array::<4>("VIEWS");
     let [f0, centers, halves_u, halves_v, answers] = ["F0", "CENTERS", "HALVES_U", "HALVES_V", "ANSWERS"]
         .map(|name| array::<3>(name).into_iter().map(DVec3::from_array).collect::<Vec<_>>());
@@ -62,7 +57,7 @@ fn run(engine: &TestEngine, table: Resource) -> u32 {
 
 /// Likewise, of a table of these texels.
 fn wrong_points(engine: &TestEngine, texels: &[[f32; 4]]) -> u32 {
-    let size = arealight::LightTable::ggx().size();
+    let size = LightTable::ggx().size();
     let description = ImageDescription {
         name: "table",
         extent: [size, size],
@@ -86,7 +81,7 @@ fn as_srgb(value: f32) -> f32 {
 #[test]
 fn the_right_table_passes_and_wrong_ones_fail() {
     let Some(engine) = TestEngine::new() else { return };
-    let table = arealight::LightTable::ggx();
+    let table = LightTable::ggx();
     let (texels, size) = (table.texels(), table.size() as usize);
     let layer = size * size;
     assert_eq!(wrong_points(&engine, &texels), 0);

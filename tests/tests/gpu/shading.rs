@@ -1,12 +1,9 @@
 //! The GPU against the float64 oracle: the same table, the same integral, in another precision.
 
 use arealight::table::{LAYERS, LobePairs};
-use arealight::{FormFactor, Horizon, LightTable, Lobes, Quality, SpecularLobes};
-use arealight_engine::EvalPoint;
-use arealight_oracle::shading::{RelativeLight, ltc, ltc_on};
-use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface, point, rounding};
+use arealight_oracle::shading::{ltc, ltc_on};
+use arealight_tests::prelude::*;
 use arealight_vk::TableFormat;
-use glam::DVec3;
 use std::sync::LazyLock;
 
 const COUNT: usize = 4000;
@@ -23,7 +20,7 @@ fn expected_with(table: &LightTable, point: &EvalPoint) -> DVec3 {
 }
 
 /// Polygons of 3 to 12 vertices, convex and concave, above, across and below the horizon.
-fn lights(seed: u64, surface: impl Fn(&mut Random) -> arealight_oracle::material::Surface) -> Vec<EvalPoint> {
+fn lights(seed: u64, surface: impl Fn(&mut Random) -> Surface) -> Vec<EvalPoint> {
     let mut random = Random::new(seed);
     (0..COUNT)
         .map(|i| {
@@ -118,7 +115,7 @@ fn glossy_follows_the_table_down_to_mirrors() {
 
 #[test]
 fn fresnel_and_both_lobes_add_up() {
-    let points = lights(3, |random| arealight_oracle::material::Surface {
+    let points = lights(3, |random| Surface {
         diffuse_albedo: DVec3::new(0.8, 0.3, 0.1),
         f0: DVec3::new(0.04, 0.5, 0.9),
         f90: random.unit(),
@@ -133,7 +130,7 @@ fn fresnel_and_both_lobes_add_up() {
 #[test]
 fn every_way_to_the_glossy_lobe_follows_its_twin() {
     // Rough enough that the part of a lobe above the surface, which both horizons divide by, is not small
-    let points = lights(9, |random| arealight_oracle::material::Surface {
+    let points = lights(9, |random| Surface {
         diffuse_albedo: DVec3::ZERO,
         f0: DVec3::new(0.04, 0.5, 0.9),
         f90: 1.0,
@@ -141,7 +138,7 @@ fn every_way_to_the_glossy_lobe_follows_its_twin() {
         ..Default::default()
     });
     let Some(engine) = TestEngine::new() else { return };
-    let mut answers: Vec<Vec<glam::Vec3>> = Vec::new();
+    let mut answers: Vec<Vec<Vec3>> = Vec::new();
     for specular_lobes in [SpecularLobes::One, SpecularLobes::Two] {
         // Formulas make one lobe
         let sources = [Lobes::Table, Lobes::Formula];
@@ -214,7 +211,7 @@ fn a_far_light_below_the_surface_sends_nothing_with_both_horizons() {
     let Some(engine) = TestEngine::new() else { return };
     let quality = Quality::default();
     let answers = engine.eval(&points, Quality { horizon: Horizon::Both, ..quality }).unwrap();
-    assert!(answers.iter().all(|answer| *answer == glam::Vec3::ZERO), "{answers:?}");
+    assert!(answers.iter().all(|answer| *answer == Vec3::ZERO), "{answers:?}");
     // The twin: clipped at the lobe's horizon alone, they do
     let answers = engine.eval(&points, quality).unwrap();
     assert!(answers.iter().filter(|answer| answer.x > 0.0).count() > 50);

@@ -1,22 +1,10 @@
 //! Disks, spheres and tubes in the shade pass: pixels of a G-buffer against the float64 oracle.
 
-use arealight::plan::ShadeOptions;
-use arealight::{
-    Effects, Light, LightShape, LightSummary, LightTable, LightTexture, PackedLights, Plane, Quality,
-    TubeEnds,
-};
 use arealight_benches::pictures;
-use arealight_engine::host::{Image, ImageDescription, Usage};
-use arealight_engine::{Engine, Reference, SceneRenderer};
-use arealight_oracle::material::Material;
+use arealight_engine::Reference;
 use arealight_oracle::shading::{shape_ltc_on, shape_seen_from};
-use arealight_oracle::texture::Texture;
-use arealight_scene::{Scene, SceneBuffers};
-use arealight_tests::scenes::{lambert, scene_of, without_textures};
-use arealight_tests::{Comparison, Random, TestEngine, rounding};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
-use ash::vk;
-use glam::{DVec3, Vec3, Vec4};
+use arealight_tests::pass::{LightBuffers, planes, radiance, reads, run, store, stored_in};
+use arealight_tests::prelude::*;
 use std::sync::{Arc, LazyLock};
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
@@ -125,67 +113,37 @@ fn expected(shapes: &[Light]) -> Vec<DVec3> {
 }
 
 /// What the shade pass makes of all pixels, with the code of `effects` beside what is needed.
-fn shade(engine: &Engine, effects: Effects, lights: &[Light]) -> Vec<Vec4> {
-    let host = engine.host();
-    let image = |name, usage, texels: Vec<[f32; 4]>, ready| {
-        let (format, extent) = (vk::Format::R32G32B32A32_SFLOAT, [PIXELS as u32, 1]);
-        let image =
-            host.image(&ImageDescription { name, extent, layers: 1, format, usage }).expect("an image");
-        image.upload(&texels, ready).expect("an upload");
-        image
+fn shade(engine: &TestEngine, effects: Effects, lights: &[Light]) -> Vec<Vec4> {
+    let (size, pixels) = ([PIXELS as u32, 1], pixels());
+    let planes = planes(engine, size, &|plane, [x, _]| {
+        let Pixel { position, normal, material } = &pixels[x as usize];
+        match plane {
+            Plane::Position => Some(position.as_vec3().extend(1.0)),
+            Plane::Normal => Some(normal.as_vec3().extend(material.roughness)),
+            Plane::BaseColor => Some(material.base_color.extend(material.metalness)),
+            Plane::Specular => Some(material.dielectric_f0.extend(material.dielectric_f90)),
+            Plane::Coat | Plane::Sheen | Plane::Anisotropy | Plane::Film => Some(Vec4::ZERO),
+            _ => None,
+        }
+    });
+    let radiance = radiance(engine, size, Vec4::NAN);
+    let lights = LightBuffers::new(engine, lights, DVec3::ZERO);
+    let resources = ShadeResources {
+        planes: reads(&planes),
+        radiance: store(&radiance),
+        light_textures: Some(engine.light_textures()),
+        ..lights.resources(engine)
     };
-    let sampled = |name, texel: &dyn Fn(&Pixel) -> Vec4| {
-        let texels = pixels().iter().map(|pixel| texel(pixel).to_array()).collect();
-        image(name, vk::ImageUsageFlags::SAMPLED, texels, Usage::COMPUTE_READ)
+    let summary = lights.packed.summary();
+    let frame = ShadeFrame {
+        lights: LightSummary { effects: effects | summary.effects, ..summary },
+        ..lights.frame(size, CAMERA.as_vec3())
     };
-    let position = sampled("position", &|p| p.position.as_vec3().extend(1.0));
-    let normal = sampled("normal", &|p| p.normal.as_vec3().extend(p.material.roughness));
-    let color = sampled("colour", &|p| p.material.base_color.extend(p.material.metalness));
-    let nothing = sampled("coat, sheen, second roughnesses", &|_| Vec4::ZERO);
-    let specular = sampled("specular", &|p| p.material.dielectric_f0.extend(p.material.dielectric_f90));
-    let radiance =
-        image("radiance", vk::ImageUsageFlags::STORAGE, vec![[f32::NAN; 4]; PIXELS], Usage::COMPUTE_WRITE);
-    let read =
-        |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
-    // SAFETY: Host::submit waits, and everything here is dropped before the engine.
-    unsafe {
-        let options = ShadeOptions { surfaces: effects, ..ShadeOptions::default() };
-        let pass = ShadePass::new(engine.context(), options).expect("a pipeline");
-        let packed = PackedLights::new(lights, DVec3::ZERO).expect("shapes");
-        let buffer = host.storage_buffer("shapes", &packed.shapes).expect("a buffer");
-        let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).expect("a pool");
-        let set = pool.allocate(pass.set_layout()).expect("a set");
-        let resources = ShadeResources {
-            table: engine.table(),
-            lights: Resource::buffer(buffer.handle()),
-            light_vertices: Resource::buffer(buffer.handle()),
-            planes: [
-                (Plane::Position, read(&position)),
-                (Plane::Normal, read(&normal)),
-                (Plane::BaseColor, read(&color)),
-                (Plane::Specular, read(&specular)),
-                (Plane::Coat, read(&nothing)),
-                (Plane::Sheen, read(&nothing)),
-                (Plane::Anisotropy, read(&nothing)),
-                (Plane::Film, read(&nothing)),
-            ]
-            .into(),
-            radiance: Resource::StorageImage { view: radiance.view() },
-            light_textures: Some(engine.light_textures()),
-            shapes: Some(Resource::buffer(buffer.handle())),
-            ..ShadeResources::default()
-        };
-        pass.write_set(set, &resources).expect("resources");
-        let frame = ShadeFrame {
-            size: [PIXELS as u32, 1],
-            camera: CAMERA.as_vec3(),
-            lights: LightSummary { effects: effects | packed.summary().effects, ..packed.summary() },
-            ..ShadeFrame::default()
-        };
-        host.submit(|commands| pass.record(commands, set, &frame).expect("a recording")).expect("a run");
-    }
-    let texels: Vec<[f32; 4]> = radiance.download(Usage::COMPUTE_WRITE).expect("a download");
-    texels.into_iter().map(Vec4::from_array).collect()
+    let options = ShadeOptions { surfaces: effects, ..ShadeOptions::default() };
+    // SAFETY: `run` waits, and the pass is dropped before the engine.
+    let pass = unsafe { ShadePass::new(engine.context(), options) }.expect("a pipeline");
+    run(engine, &pass, &resources, size, &[frame], Descriptors::Sets);
+    stored_in(&radiance)
 }
 
 #[test]

@@ -4,9 +4,8 @@
 use arealight_oracle::ellipse::Ellipse;
 use arealight_oracle::polygon;
 use arealight_oracle::sphere::Sphere;
+use arealight_tests::prelude::*;
 use arealight_tests::shapes::lobe_arguments;
-use arealight_tests::{Comparison, Random, TestEngine};
-use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
 const COSINE: u32 = 0;

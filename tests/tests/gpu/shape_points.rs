@@ -2,14 +2,11 @@
 //! reference, and against the oracle's fitted lobes.
 
 use arealight::gpu::GpuShape;
-use arealight::{Effects, FormFactor, Horizon, LightShape, Quality, SpecularLobes};
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{CaseMaterial, ShapeCase, read_cases};
 use arealight_cases::measure::relative_error;
-use arealight_engine::EvalPoint;
 use arealight_oracle::shading::shape_ltc_on;
-use arealight_tests::{Comparison, TestEngine};
-use glam::{DVec3, Vec3};
+use arealight_tests::prelude::*;
 use std::collections::HashMap;
 
 const CASES: &str = include_str!("../../data/reference/cases.json");
@@ -79,13 +76,13 @@ fn widened(radiance: Vec3) -> [f64; 3] {
 
 /// Compares answers with the oracle's, and returns how many a lobe of another roughness would have noticed.
 fn compare_with_oracle(cases: &[(ShapeCase, bool)], found: &[Vec3], quality: Quality, bound: f64) -> usize {
-    let table = arealight::LightTable::ggx();
+    let table = LightTable::ggx();
     let mut comparison = Comparison::new(format!("shapes, {quality:?}"));
     let mut twin = 0;
     for ((case, diffuse), found) in cases.iter().zip(found) {
         let ShapeCase { name, surface, normal, view, light, .. } = case;
         let by = |alpha: f64| {
-            let surface = arealight_oracle::material::Surface { alpha: surface.alpha * alpha, ..*surface };
+            let surface = Surface { alpha: surface.alpha * alpha, ..*surface };
             shape_ltc_on(quality, &table, &surface, *normal, *view, light).unwrap()
         };
         // Relative to what the light sends when it fills the sky
@@ -160,7 +157,7 @@ fn shapes_are_cut_at_both_horizons() {
     let found = engine.eval_shapes(&points(&cases), quality).unwrap();
     compare_with_oracle(&cases, &found, quality, ROUNDING);
     // The twin: one horizon is another answer
-    let table = arealight::LightTable::ggx();
+    let table = LightTable::ggx();
     let noticed = cases.iter().zip(&found).filter(|((case, _), found)| {
         let ShapeCase { surface, normal, view, light, .. } = case;
         let one = shape_ltc_on(Quality::default(), &table, surface, *normal, *view, light).unwrap();

@@ -4,9 +4,8 @@
 use arealight_cases::hard::ellipse::{FAMILIES, Family, rounded};
 use arealight_oracle::ellipse::{Ellipse, form_factor, vector_form_factor};
 use arealight_oracle::polygon;
+use arealight_tests::prelude::*;
 use arealight_tests::shapes::{ShapeArguments, ShapeFunction, ellipse_arguments};
-use arealight_tests::{Comparison, Random, TestEngine};
-use glam::{DMat3, DVec3};
 
 const EXACT: u32 = 0;
 const DIFFERENCE: u32 = 1;

@@ -1,16 +1,14 @@
 //! Ellipses and spheres on the device against float64, over the families that are hard for float32.
 
-use arealight_cases::hard::ellipse::{FAMILIES, Family};
+use arealight_cases::hard::ellipse::Family;
 use arealight_cases::hard::nearby_shape;
 use arealight_cases::hard::promise::MOVE;
 use arealight_oracle::ellipse::{Ellipse, form_factor};
 use arealight_oracle::sphere::{self, Sphere};
+use arealight_tests::prelude::*;
 use arealight_tests::shapes::{ShapeFunction, ellipse_arguments, sphere_arguments};
-use arealight_tests::{Comparison, Random, TestEngine};
-use glam::{DMat3, DVec3};
 
 const EXACT: u32 = 0;
-const DIFFERENCE: u32 = 1;
 const SAMPLES: u64 = 1000;
 
 /// What [`arealight_ellipse_form_factor`](ShapeFunction::Ellipse) promises of its backward error.
@@ -18,36 +16,6 @@ const BACKWARD: f64 = 6e-7;
 
 fn cases(family: &Family) -> Vec<Ellipse> {
     (0..SAMPLES).map(|index| family.case(index, 0)).collect()
-}
-
-#[test]
-fn hard_ellipses_are_as_good_as_their_rounding() {
-    let Some(engine) = TestEngine::new() else { return };
-    // All families in one dispatch: a software driver compiles each pipeline for a second
-    let all: Vec<_> = FAMILIES.iter().flat_map(cases).collect();
-    for level in [EXACT, DIFFERENCE] {
-        let found = engine.ellipses(ShapeFunction::Ellipse, level, &all);
-        for (family, (cases, found)) in
-            FAMILIES.iter().zip(all.chunks_exact(SAMPLES as usize).zip(found.chunks_exact(SAMPLES as usize)))
-        {
-            let mut comparison = Comparison::new(format!("{}, level {level}", family.name));
-            let mut twin = Comparison::new("a result off by twice the bound");
-            let bound = BACKWARD;
-            for (case, &found) in cases.iter().zip(found) {
-                let error = nearby_shape::distance(case, found, 1e-7);
-                comparison.add(error, 0.0, bound, || format!("{case:?}"));
-                // In contact with the rim every value may be near by; elsewhere few are
-                twin.add(nearby_shape::distance(case, found + 3.0 * bound, 1e-7), 0.0, bound, String::new);
-            }
-            comparison.assert_all();
-            let needed = if ["huge", "contact-rim", "contact-interior", "needle-tip"].contains(&family.name) {
-                20
-            } else {
-                500
-            };
-            assert!(twin.failures() > needed, "{}: {} noticed", family.name, twin.failures());
-        }
-    }
 }
 
 /// The worst cases of long batteries: the point before a needle's tip, which the horizon cuts.
@@ -68,77 +36,6 @@ fn before_a_needles_tip_no_digit_cancels() {
     for (case, (_, _, difference)) in cases.iter().zip(known) {
         let error = nearby_shape::distance(case, difference, 1e-7);
         assert!(error > 2.0 * BACKWARD, "{error:e}: {case:?}");
-    }
-}
-
-/// The yardstick fails where it is known to: the families are hard.
-#[test]
-fn the_published_disk_breaks() {
-    let Some(engine) = TestEngine::new() else { return };
-    let all: Vec<_> = FAMILIES.iter().flat_map(cases).collect();
-    let arguments: Vec<_> = all.iter().map(ellipse_arguments).collect();
-    let found = engine.shapes(ShapeFunction::Published, 1, &arguments);
-    let families = all.chunks_exact(SAMPLES as usize).zip(found.chunks_exact(SAMPLES as usize));
-    for (family, (cases, found)) in FAMILIES.iter().zip(families) {
-        let not_finite = found.iter().filter(|found| !found[0].is_finite()).count();
-        let error = |index: usize| {
-            let errors = found
-                .iter()
-                .zip(cases)
-                .map(|(found, case)| (f64::from(found[index]) - form_factor(case).abs()).abs());
-            errors.filter(|error| error.is_finite()).fold(0.0, f64::max)
-        };
-        let (proxy, cheap) = (error(0), error(1));
-        println!(
-            "{}: {not_finite} of {SAMPLES} not finite; error {proxy:.1e}, cheap {cheap:.1e}",
-            family.name
-        );
-        let known = match family.name {
-            "generic" | "crossing" | "elongated" => proxy > 1e-2 && cheap > 5e-2,
-            "above" | "tangent" | "low-alpha" => proxy > 1e-3 && cheap > 1e-2,
-            "edge-on" | "contact-interior" | "huge" | "thin" | "needle-tip" | "far" | "far-crossing" => {
-                not_finite > 50
-            }
-            _ => proxy > 0.1,
-        };
-        assert!(known, "{}: the yardstick holds", family.name);
-    }
-}
-
-/// What a light of this size sends from there at most: the area it shows, over pi times the squared distance,
-/// and with the highest elevation of any of its points.
-fn most(ellipse: &Ellipse) -> f64 {
-    let area = ellipse.axis_u.cross(ellipse.axis_v).length();
-    let square = ellipse.center.length_squared();
-    let rise = ellipse.axis_u.z.hypot(ellipse.axis_v.z);
-    area / square * (ellipse.center.z.abs() + rise) / square.sqrt()
-}
-
-#[test]
-fn far_ellipses_keep_relative_precision() {
-    let Some(engine) = TestEngine::new() else { return };
-    for (name, level, bound) in [
-        // The height above the ellipse's plane is rounded in the distance, and so is the elevation
-        ("far", EXACT, 1e-6),
-        ("far-crossing", DIFFERENCE, 5e-6),
-    ] {
-        let cases = cases(Family::find(name).unwrap());
-        let mut comparison = Comparison::new(format!("{name}, level {level}"));
-        let mut plain = 0;
-        let found = engine.ellipses(ShapeFunction::Ellipse, level, &cases);
-        let clipped = engine.ellipses(ShapeFunction::Ellipse, EXACT, &cases);
-        for ((case, found), clipped) in cases.iter().zip(found).zip(clipped) {
-            let (truth, whole) = (form_factor(case).abs(), most(case));
-            // The small form's own error
-            let size =
-                case.axis_u.length_squared().max(case.axis_v.length_squared()) / case.center.length_squared();
-            let bound = bound + if name == "far" { 0.0 } else { 2.0 * size };
-            comparison.add(found / whole, truth / whole, bound, || format!("{case:?}"));
-            plain += usize::from((clipped - truth).abs() > bound * whole);
-        }
-        comparison.assert_all();
-        // The twin: without the difference form those that cross the horizon have no correct digit
-        assert!(name == "far" || plain > 500, "{plain} noticed");
     }
 }
 
@@ -222,7 +119,7 @@ fn spheres(seed: u64, low: f64) -> Vec<Sphere> {
             _ => sine * (1.0 - random.between(-20.0, -7.0).exp2()) * if axis.x < 0.0 { 1.0 } else { -1.0 },
         };
         let across = (1.0 - height * height).max(0.0).sqrt();
-        let flat = axis.truncate().try_normalize().unwrap_or(glam::DVec2::X) * across;
+        let flat = axis.truncate().try_normalize().unwrap_or(DVec2::X) * across;
         let center = (flat.extend(height) * distance).as_vec3().as_dvec3();
         Sphere { center, radius: f64::from((sine * distance) as f32) }
     };

@@ -1,14 +1,9 @@
 //! Sheen on the GPU: against the float64 twin, against none, and in its image of a G-buffer.
 
-use arealight::plan::GBufferLayout;
-use arealight::{Effects, Plane, Quality};
-use arealight_engine::EvalPoint;
-use arealight_oracle::material::{Coat, Material, Sheen, Surface};
-use arealight_tests::materials::{lobe_qualities, shape_lights, under_polygon};
-use arealight_tests::one_pixel::{LAYOUTS, OnePixel, material, under_lamp};
-use arealight_tests::{Random, TestEngine, point, rounding};
-use arealight_vk::ash::vk::Format;
-use glam::{DVec3, Vec3, Vec4};
+use arealight_oracle::material::Sheen;
+use arealight_tests::materials::{changed, lobe_qualities, under_shapes};
+use arealight_tests::one_pixel::material;
+use arealight_tests::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
 const COUNT: usize = 2000;
@@ -80,16 +75,9 @@ fn sheen_follows_its_float64_twin() {
 #[test]
 fn disks_spheres_and_tubes_light_sheen_as_their_float64_twins() {
     let Some(engine) = TestEngine::new() else { return };
-    let mut random = Random::new(2);
-    let points: Vec<EvalPoint> = points(3)
-        .into_iter()
-        .take(300)
-        .flat_map(|EvalPoint { surface, position, normal, view, .. }| {
-            // One kind of pipeline: no coats
-            let surface = Surface { coat: None, ..surface };
-            shape_lights(&mut random).map(|light| EvalPoint { surface, position, normal, view, light })
-        })
-        .collect();
+    // One kind of pipeline: no coats
+    let points = changed(&points(3)[..300], |surface| Surface { coat: None, ..*surface });
+    let points = under_shapes(2, points);
     // A curved outline's ends on a horizon: 1e-5 of a form factor (docs/shapes.md), which albedos of up to
     // 2.9 multiply
     engine.assert_follows_shape_twin("sheen under shapes", &points, |given| bound(&given.surface) + 3e-5);
@@ -98,22 +86,12 @@ fn disks_spheres_and_tubes_light_sheen_as_their_float64_twins() {
 #[test]
 fn black_sheen_is_none_to_the_bit() {
     let Some(engine) = TestEngine::new() else { return };
-    let uncoated = |sheen: fn(Sheen) -> Option<Sheen>| -> Vec<EvalPoint> {
-        let change = |point: &EvalPoint| {
-            let sheen = point.surface.sheen.and_then(sheen);
-            EvalPoint { surface: Surface { sheen, coat: None, ..point.surface }, ..point.clone() }
-        };
-        points(4).iter().map(change).collect()
+    let with = points(4);
+    let of = |change: fn(Sheen) -> Option<Sheen>| {
+        changed(&with, |surface| Surface { sheen: surface.sheen.and_then(change), coat: None, ..*surface })
     };
-    let black = uncoated(|sheen| Some(Sheen { color: DVec3::ZERO, ..sheen }));
-    for quality in lobe_qualities() {
-        let without = engine.eval_bits(&uncoated(|_| None), quality);
-        assert_eq!(engine.eval_bits(&black, quality), without, "{quality:?}");
-        // The twin: of any colour it is seen
-        let with = engine.eval_bits(&uncoated(Some), quality);
-        let same = with.iter().zip(&without).filter(|(with, without)| with == without).count();
-        assert!(same < COUNT / 2, "{same} points are the same");
-    }
+    let black = of(|sheen| Some(Sheen { color: DVec3::ZERO, ..sheen }));
+    engine.assert_none_to_the_bit(&lobe_qualities(), [&black, &of(|_| None), &of(Some)]);
 }
 
 #[test]
@@ -148,21 +126,8 @@ fn at_the_normal_sheen_does_not_jump() {
 #[test]
 fn every_layout_has_its_sheen_in_an_image_of_its_own() {
     let Some(engine) = TestEngine::new() else { return };
-    let texel = [0.9_f32, 0.5, 0.2, 0.4];
-    let shade = |layout, effects, sheen: [f32; 4]| {
-        let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);
-        pixel.set(Plane::Sheen, Format::R32G32B32A32_SFLOAT, sheen);
-        pixel.shade_under_lamp(layout, effects)
-    };
-    for layout in LAYOUTS {
-        let without = shade(layout, Effects::empty(), texel);
-        assert_eq!(shade(layout, Effects::SHEEN, [0.0, 0.0, 0.0, 0.4]), without, "{layout:?}: black is none");
-        assert_ne!(shade(layout, Effects::SHEEN, texel), without, "{layout:?}");
-    }
-    // Against a point without a G-buffer
     let material = Material { sheen_color: Vec3::new(0.9, 0.5, 0.2), sheen_roughness: 0.4, ..material() };
-    let expected = engine.eval(&[under_lamp(material.surface())], Quality::default()).unwrap()[0];
-    let found = shade(GBufferLayout::Arealight, Effects::SHEEN, texel);
+    let (black, texels) = ([[0.0, 0.0, 0.0, 0.4]], [[0.9, 0.5, 0.2, 0.4]]);
     // Radiance of 3 and three lobes
-    assert!((found - expected).abs().max_element() < 2e-5, "{found} and {expected}");
+    engine.assert_plane((Plane::Sheen, Effects::SHEEN), &black, &texels, (material.surface(), 2e-5));
 }

@@ -3,8 +3,7 @@
 use super::tubes::{COUNT, DIFFERENCE, ENDS, EXACT, distance, found, is_thin, round};
 use arealight_cases::hard::nearby_shape;
 use arealight_oracle::tube::{Ends, Tube, form_factor};
-use arealight_tests::{Comparison, Random, TestEngine};
-use glam::{DMat3, DVec3};
+use arealight_tests::prelude::*;
 
 /// Slim tubes that lie nearly level and pass through the horizon between their ends.
 fn slanting_tubes(ends: Ends) -> Vec<Tube> {

@@ -1,13 +1,9 @@
 //! Stencil tests: pixels that fail stay as they are, whatever a frame does to others.
 
-use arealight::Plane;
-use arealight::plan::{Output, ShadeOptions};
-use arealight_tests::TestEngine;
-use arealight_tests::floor::{Floor, SIZE, image, lamps, pixels, read};
-use arealight_tests::one_pixel::BEFORE;
-use arealight_vk::{Descriptors, Error, ShadeFrame, ShadePass, ShadeResources, StencilTest};
-use ash::vk;
-use glam::DVec3;
+use arealight_tests::floor::{SIZE, lamps, pixels};
+use arealight_tests::pass::{image, read};
+use arealight_tests::prelude::*;
+use arealight_vk::{Error, StencilTest};
 
 /// The kernels' own rounding.
 const BOUND: f64 = 1e-4;

@@ -2,12 +2,10 @@
 //! world's origin, under lights of many vertices; against float64, with bounds by backward error (see
 //! `arealight_tests::lobe`).
 
-use arealight::{Effects, Horizon, LightTable};
-use arealight_engine::EvalPoint;
+use arealight_tests::Path;
 use arealight_tests::lobe::{Judge, Lobe, Seen};
-use arealight_tests::{Cases, Comparison, Level, Path, Random, TestEngine, glossy_surface, point};
+use arealight_tests::prelude::*;
 use arealight_vk::TableFormat;
-use glam::DVec3;
 use half::f16;
 use std::sync::LazyLock;
 
@@ -53,7 +51,7 @@ const FAMILIES: [(&str, Make); 6] = [
         let vertices = in_the_lobe(random, alpha, view, 3 + index % 4);
         let mut given = point(glossy_surface(alpha), view, vertices, index % 3 == 0);
         // Not along an axis
-        let turn = glam::DQuat::from_axis_angle(random.direction(), random.between(0.0, 3.0));
+        let turn = DQuat::from_axis_angle(random.direction(), random.between(0.0, 3.0));
         given.normal = turn * given.normal;
         given.view = turn * given.view;
         given.light.shape.vertices_mut().iter_mut().for_each(|vertex| *vertex = turn * *vertex);

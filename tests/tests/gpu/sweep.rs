@@ -2,21 +2,19 @@
 //! shade pass: each frame is what float64 says, and none jumps from the one before.
 
 use arealight::gpu::GpuLight;
-use arealight::plan::ShadeOptions;
-use arealight::{Effects, Horizon, Light, LightShape, LightTable, PackedLights, Plane};
-use arealight_engine::host::{Image, ImageDescription, Usage};
-use arealight_oracle::material::Material;
+use arealight_tests::Path;
 use arealight_tests::lobe::{Lobe, Seen};
-use arealight_tests::{Cases, Comparison, Level, Path, TestEngine};
+use arealight_tests::pass::{LightBuffers, planes, radiance, reads, run, store, stored_in};
+use arealight_tests::prelude::*;
 use arealight_tool_kernels::gpu::GpuCase;
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
-use ash::vk;
-use glam::{DQuat, DVec3, Vec3};
 use std::sync::LazyLock;
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 const FRAMES: usize = 1000;
+
+/// A row of pixels a frame.
+const SIZE: [u32; 2] = [SURFACES.len() as u32, FRAMES as u32];
 
 /// The surfaces of a frame: one that the light passes through, one beside it, and one that is seen at a
 /// grazing angle with the light behind it; each nearly a mirror, and rough.
@@ -75,16 +73,17 @@ fn light(concave: bool) -> Light {
 /// What the pass is given: a row of pixels a frame.
 struct Sweep<'a> {
     engine: &'a TestEngine,
-    packed: PackedLights,
-    positions: Vec<[f32; 4]>,
+    lights: LightBuffers,
+    positions: Vec<Vec3>,
     /// The same as cases, with the light as each pixel sees it.
     given: Cases,
-    images: [Image; 4],
+    planes: Planes<Option<Image>>,
 }
 
 impl<'a> Sweep<'a> {
     fn new(engine: &'a TestEngine, light: &Light) -> Self {
-        let packed = PackedLights::new(std::slice::from_ref(light), DVec3::ZERO).unwrap();
+        let lights = LightBuffers::new(engine, std::slice::from_ref(light), DVec3::ZERO);
+        let packed = &lights.packed;
         let pixels: Vec<(Vec3, Material)> = (0..FRAMES)
             .flat_map(|frame| {
                 SURFACES.map(|(surface, roughness)| (surface - place(frame), material(roughness)))
@@ -122,72 +121,33 @@ impl<'a> Sweep<'a> {
                 reserved1: 0.0,
             });
         }
-        let positions: Vec<[f32; 4]> = pixels.iter().map(|(p, _)| p.extend(1.0).to_array()).collect();
-        let normals: Vec<[f32; 4]> = pixels.iter().map(|(_, m)| [0.0, 0.0, 1.0, m.roughness]).collect();
-        let colors: Vec<[f32; 4]> =
-            pixels.iter().map(|(_, m)| m.base_color.extend(m.metalness).to_array()).collect();
-        let image = |name, usage| {
-            let format = vk::Format::R32G32B32A32_SFLOAT;
-            let extent = [SURFACES.len() as u32, FRAMES as u32];
-            engine.host().image(&ImageDescription { name, extent, layers: 1, format, usage }).unwrap()
-        };
-        let sampled = |name, texels: &[[f32; 4]]| {
-            let image = image(name, vk::ImageUsageFlags::SAMPLED);
-            image.upload(texels, Usage::COMPUTE_READ).unwrap();
-            image
-        };
-        let radiance = image("radiance", vk::ImageUsageFlags::STORAGE);
-        // What is not written stays NaN
-        radiance.upload(&vec![[f32::NAN; 4]; pixels.len()], Usage::COMPUTE_WRITE).unwrap();
-        let images = [
-            sampled("position", &positions),
-            sampled("normal", &normals),
-            sampled("colour", &colors),
-            radiance,
-        ];
-        Self { engine, packed, positions, given, images }
+        let planes = planes(engine, SIZE, &|plane, [x, y]| {
+            let (position, material) = &pixels[y as usize * SURFACES.len() + x as usize];
+            match plane {
+                Plane::Position => Some(position.extend(1.0)),
+                Plane::Normal => Some(Vec3::Z.extend(material.roughness)),
+                Plane::BaseColor => Some(material.base_color.extend(material.metalness)),
+                _ => None,
+            }
+        });
+        let positions = pixels.iter().map(|(position, _)| *position).collect();
+        Self { engine, lights, positions, given, planes }
     }
 
     /// The red channel of every pixel.
     fn shade(&self, level: Level) -> Vec<f32> {
-        let host = self.engine.host();
-        let effects = level.effects(Effects::DIFFUSE | Effects::GLOSSY);
-        let options = ShadeOptions { surfaces: effects, quality: level.quality, ..ShadeOptions::default() };
-        let sampled =
-            |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
-        let [position, normal, color, radiance] = &self.images;
-        let lights = host.storage_buffer("lights", &self.packed.lights).unwrap();
-        let vertices = host.storage_buffer("vertices", &self.packed.vertices).unwrap();
-        // SAFETY: Host::submit waits, and everything here is dropped before the engine.
-        unsafe {
-            let pass = ShadePass::new(self.engine.context(), options).unwrap();
-            let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
-            let set = pool.allocate(pass.set_layout()).unwrap();
-            let resources = ShadeResources {
-                table: self.engine.table(),
-                lights: Resource::buffer(lights.handle()),
-                light_vertices: Resource::buffer(vertices.handle()),
-                planes: [
-                    (Plane::Position, sampled(position)),
-                    (Plane::Normal, sampled(normal)),
-                    (Plane::BaseColor, sampled(color)),
-                    (Plane::Specular, sampled(color)),
-                ]
-                .into(),
-                radiance: Resource::StorageImage { view: radiance.view() },
-                ..ShadeResources::default()
-            };
-            pass.write_set(set, &resources).unwrap();
-            let frame = ShadeFrame {
-                size: [SURFACES.len() as u32, FRAMES as u32],
-                camera: CAMERA,
-                lights: self.packed.summary(),
-                ..ShadeFrame::default()
-            };
-            host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
-        }
-        let texels: Vec<[f32; 4]> = radiance.download(Usage::COMPUTE_WRITE).unwrap();
-        texels.iter().map(|texel| texel[0]).collect()
+        let surfaces = level.effects(Effects::DIFFUSE | Effects::GLOSSY);
+        let options = ShadeOptions { surfaces, quality: level.quality, ..ShadeOptions::default() };
+        // SAFETY: `run` waits, and the pass is dropped before the engine.
+        let pass = unsafe { ShadePass::new(self.engine.context(), options) }.unwrap();
+        // What is not written stays NaN
+        let radiance = radiance(self.engine, SIZE, Vec4::NAN);
+        let planes = reads(&self.planes);
+        let planes = planes.with(Plane::Specular, planes[Plane::BaseColor]);
+        let resources =
+            ShadeResources { planes, radiance: store(&radiance), ..self.lights.resources(self.engine) };
+        run(self.engine, &pass, &resources, SIZE, &[self.lights.frame(SIZE, CAMERA)], Descriptors::Sets);
+        stored_in(&radiance).into_iter().map(|texel| texel.x).collect()
     }
 }
 

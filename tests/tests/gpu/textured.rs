@@ -1,13 +1,10 @@
 //! Textured lights: energy, orientation, and the cases that have no easy answer.
 
-use arealight::{Footprint, FormFactor, Horizon, Light, LightTexture, PyramidSize, Quality, SpecularLobes};
 use arealight_benches::pictures;
-use arealight_engine::{EvalPoint, SourceImage, SourceTexels};
-use arealight_oracle::material::Surface;
+use arealight_engine::{SourceImage, SourceTexels};
 use arealight_oracle::shading::footprint::{Filter, LobeSpaceLight, filtered};
-use arealight_oracle::texture::{Pyramid, Texture};
-use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface, point};
-use glam::{DVec2, DVec3, Vec3};
+use arealight_oracle::texture::Pyramid;
+use arealight_tests::prelude::*;
 use std::sync::Arc;
 
 const FOOTPRINTS: [Footprint; 3] = [Footprint::Round, Footprint::Ellipse, Footprint::Split];

@@ -1,15 +1,11 @@
 //! Textured disks: energy, orientation, and how far off the lookups are.
 
 use arealight::gpu::GpuShape;
-use arealight::{Footprint, FormFactor, Horizon, Light, LightShape, LightTexture, Quality};
 use arealight_benches::pictures;
-use arealight_engine::EvalPoint;
 use arealight_oracle::shading::footprint::Filter;
 use arealight_oracle::shading::poses::{Bar, Errors, Family, Pose, poses};
 use arealight_oracle::shading::{ltc_on, textured_ellipse};
-use arealight_oracle::texture::Texture;
-use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface};
-use glam::{DVec3, Vec3};
+use arealight_tests::prelude::*;
 use std::sync::Arc;
 
 /// Texels a side.
@@ -172,7 +168,7 @@ fn disk(pose: &Pose, layer: u32) -> EvalPoint {
 #[test]
 fn lookups_are_within_the_bars_of_polygons() {
     let Some(engine) = engine() else { return };
-    let (table, textures) = (arealight::LightTable::ggx(), textures());
+    let (table, textures) = (LightTable::ggx(), textures());
     // More of them by hand, for the table of docs/textures.md
     let count = std::env::var("AREALIGHT_POSES").ok().and_then(|text| text.parse().ok()).unwrap_or(12);
     for family in Family::ALL {

@@ -1,14 +1,9 @@
 //! Textures of the visibility kernel, near the image and far from it, against a float64 twin.
 
-use arealight::Plane;
 use arealight::gpu::GpuBvhNode;
-use arealight_engine::SceneRenderer;
-use arealight_engine::host::Usage;
-use arealight_oracle::material::Material;
-use arealight_scene::{SceneBuffers, SceneMaterial};
-use arealight_tests::{Comparison, Random, TestEngine};
+use arealight_scene::SceneMaterial;
+use arealight_tests::prelude::*;
 use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
-use glam::DVec3;
 
 /// For each texture coordinate a triangle before the pixel of a row of pixels, with that coordinate all over.
 fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers {

@@ -1,16 +1,12 @@
 //! Thin films that a pass knows: against the float64 twin, against films that a host put into reflectances,
 //! and in their image of a G-buffer.
 
-use arealight::plan::{GBufferLayout, ShadeOptions};
-use arealight::{Effects, Plane, Quality, SpecularLobes};
-use arealight_engine::EvalPoint;
-use arealight_oracle::material::{Coat, Interface, Material, Surface};
+use arealight_oracle::material::Interface;
 use arealight_oracle::thin_film::ThinFilm;
-use arealight_tests::materials::under_polygon;
-use arealight_tests::one_pixel::{CAMERA, LAYOUTS, OnePixel, lamp, material, under_lamp};
-use arealight_tests::{Random, TestEngine, rounding};
+use arealight_tests::materials::points_of;
+use arealight_tests::one_pixel::{CAMERA, material};
+use arealight_tests::prelude::*;
 use arealight_vk::ash::vk::Format;
-use glam::{DVec3, Vec3, Vec4};
 
 const COUNT: usize = 1500;
 const FLOAT: Format = Format::R32G32B32A32_SFLOAT;
@@ -49,15 +45,7 @@ fn with_film(random: &mut Random, index: usize) -> Surface {
 }
 
 fn points(seed: u64) -> Vec<EvalPoint> {
-    let mut random = Random::new(seed);
-    (0..COUNT)
-        .map(|index| {
-            let surface = with_film(&mut random, index);
-            let cosine = random.between(0.02, 1.0);
-            let view = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
-            under_polygon(&mut random, index, surface, view)
-        })
-        .collect()
+    points_of(seed, COUNT, 0.02, with_film)
 }
 
 /// Of both lobes and a coat; and of a film, whose phases are up to 60 radians of a cosine that is rounded.
@@ -115,25 +103,11 @@ fn film(weight: f64) -> (ThinFilm, [f32; 4]) {
 #[test]
 fn every_layout_has_its_film_in_an_image_of_its_own() {
     let Some(engine) = TestEngine::new() else { return };
-    let shade = |layout, effects, film: [f32; 4]| {
-        let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);
-        pixel.set(Plane::Film, FLOAT, film);
-        pixel.shade_under_lamp(layout, effects)
-    };
     let (film, texel) = film(0.8);
-    for layout in LAYOUTS {
-        let without = shade(layout, Effects::empty(), texel);
-        for none in [[0.0, 1.75, 320.0, 0.0], [0.8, 1.75, 0.0, 0.0], [f32::NAN; 4]] {
-            assert_eq!(shade(layout, Effects::THIN_FILM, none), without, "{layout:?}: none");
-        }
-        assert_ne!(shade(layout, Effects::THIN_FILM, texel), without, "{layout:?}");
-    }
-    // Against a point without a G-buffer
+    let nones = [[0.0, 1.75, 320.0, 0.0], [0.8, 1.75, 0.0, 0.0], [f32::NAN; 4]];
     let surface = Material { film: Some(film), ..material() }.surface();
-    let expected = engine.eval(&[under_lamp(surface)], Quality::default()).unwrap()[0];
-    let found = shade(GBufferLayout::Arealight, Effects::THIN_FILM, texel);
     // Radiance of 3, and a film's own rounding
-    assert!((found - expected).abs().max_element() < 5e-4, "{found} and {expected}");
+    engine.assert_plane((Plane::Film, Effects::THIN_FILM), &nones, &[texel], (surface, 5e-4));
 }
 
 #[test]

@@ -1,16 +1,11 @@
 //! Shading by tiles: the picture without, whatever the lights; lists, classes and their bounds.
 
+use arealight::TileClass;
 use arealight::kernels::{CLASSIFY, SHADE};
-use arealight::plan::{ShadeOptions, TileOptions};
-use arealight::{Effects, Light, LightShape, LightTexture, Plane, Quality, TileClass, TubeEnds};
-use arealight_engine::{SceneRenderer, TileCounts};
-use arealight_oracle::texture::Texture;
-use arealight_scene::Scene;
-use arealight_tests::TestEngine;
-use arealight_tests::frame::{scene, with_renderer};
-use arealight_vk::{Error, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources};
-use ash::vk;
-use glam::{DVec3, Vec3, Vec4};
+use arealight_engine::TileCounts;
+use arealight_tests::frame::scene;
+use arealight_tests::prelude::*;
+use arealight_vk::Error;
 use std::sync::Arc;
 
 /// No multiple of a tile's side.

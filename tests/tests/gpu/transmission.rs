@@ -1,15 +1,11 @@
 //! Light that thin surfaces let through: a pass over the other side of a G-buffer, against eval, against
 //! none, by tiles, with shadows, and against Monte Carlo.
 
-use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
-use arealight::{Effects, Plane, Quality};
-use arealight_engine::host::Usage;
-use arealight_engine::{EngineError, EvalPoint, Reference, SceneRenderer};
-use arealight_oracle::material::{Interface, Surface};
-use arealight_scene::{Scene, SceneBuffers};
+use arealight::plan::{ShadowFilter, ShadowHistory};
+use arealight_engine::{EngineError, Reference};
+use arealight_oracle::material::Interface;
 use arealight_tests::frame::scene;
-use arealight_tests::{Comparison, TestEngine, rounding};
-use glam::{DVec3, Vec3, Vec4};
+use arealight_tests::prelude::*;
 use half::f16;
 
 const SIZE: [u32; 2] = [96, 54];

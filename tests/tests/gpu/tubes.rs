@@ -3,9 +3,9 @@
 use arealight_oracle::polygon;
 use arealight_oracle::sphere::{self, Sphere};
 use arealight_oracle::tube::{Ends, Tube, form_factor, transformed_form_factor};
+use arealight_tests::prelude::*;
 use arealight_tests::shapes::tube_arguments;
-use arealight_tests::{Comparison, Random, TestEngine};
-use glam::{DMat3, DVec3, Mat3, Vec3};
+use glam::Mat3;
 
 pub(super) const EXACT: u32 = 0;
 pub(super) const DIFFERENCE: u32 = 1;

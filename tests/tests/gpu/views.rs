@@ -2,17 +2,15 @@
 //! orthographic cameras, with and without tiles, each pixel against the oracle.
 
 use crate::recorder::field;
-use arealight::plan::{ShadeOptions, TileOptions};
-use arealight::{Light, LightShape, PackedLights, Plane, SpecularLobes};
-use arealight_engine::host::{Image, Location, Usage};
-use arealight_oracle::material::Material;
-use arealight_oracle::shading::{RelativeLight, ltc};
-use arealight_tests::TestEngine;
-use arealight_tests::floor::{image, looking_at_floor};
-use arealight_tests::one_pixel::{BEFORE, lamp, material};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources, Viewport};
-use ash::vk;
-use glam::{DMat4, DVec3, DVec4, Vec3, Vec4};
+use arealight_oracle::shading::ltc;
+use arealight_tests::floor::looking_at_floor;
+use arealight_tests::one_pixel::material;
+use arealight_tests::pass::{
+    LightBuffers, image, planes, radiance, read, reads, run, store, stored_in, texels,
+};
+use arealight_tests::prelude::*;
+use arealight_vk::Viewport;
+use glam::{DMat4, DVec4};
 
 /// Of the G-buffer's images.
 const TEXELS: [u32; 2] = [47, 31];
@@ -124,77 +122,43 @@ fn shade(
     shots: &[Shot],
     frames: &[ShadeFrame],
 ) -> Vec<Vec4> {
-    let (host, table) = (engine.host(), arealight::LightTable::ggx());
-    let (sampled, float) = (vk::ImageUsageFlags::SAMPLED, vk::Format::R32G32B32A32_SFLOAT);
     let side = options.texels_per_pixel;
     // Where no shot is, what an earlier frame left
-    let depth: Vec<f32> = texels()
-        .map(|texel| {
-            let shot = shots.iter().find(|shot| shot.has(texel, side));
-            shot.map_or(0.5, |shot| shot.depth(texel).unwrap_or(1.0))
-        })
-        .collect();
-    let count = depth.len();
-    let Material { base_color, roughness, metalness, .. } = material();
+    let depth = texels(TEXELS).map(|texel| {
+        let shot = shots.iter().find(|shot| shot.has(texel, side));
+        shot.map_or(0.5, |shot| shot.depth(texel).unwrap_or(1.0))
+    });
+    let (depth, sampled) = (depth.collect::<Vec<f32>>(), vk::ImageUsageFlags::SAMPLED);
     let depth = image(engine, TEXELS, vk::Format::R32_SFLOAT, sampled, &depth);
-    let normal = image(engine, TEXELS, float, sampled, &vec![[0.0, 0.0, 1.0, roughness]; count]);
-    let color = image(engine, TEXELS, float, sampled, &vec![base_color.extend(metalness).to_array(); count]);
-    let radiance =
-        image(engine, TEXELS, float, vk::ImageUsageFlags::STORAGE, &vec![BEFORE.to_array(); count]);
-    let read =
-        |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
-    // SAFETY: Host::submit waits, and everything here is dropped before the engine.
-    unsafe {
-        let every_frame = TileOptions { least_quads: 0, ..TileOptions::default() };
-        let (tiled, table_size) = (tiles.then_some(every_frame), table.size());
-        let info = ShadePassInfo { tiles: tiled, table_size, ..options.into() };
-        let pass = ShadePass::new(engine.context(), info).unwrap();
-        let packed = PackedLights::new(&lights(), DVec3::ZERO).unwrap();
-        let light_buffer = host.storage_buffer("lights", &packed.lights).unwrap();
-        let vertices = host.storage_buffer("vertices", &packed.vertices).unwrap();
-        let horizons =
-            host.storage_buffer("horizons", &table.lobe_horizons(SpecularLobes::default())).unwrap();
-        let lists = pass
-            .tile_memory(TEXELS)
-            .map(|lists| host.buffer("lists", lists.size, lists.usage, Location::Device).unwrap());
-        let tile_lists = lists.as_ref().map(|lists| Resource::buffer(lists.handle()));
-        let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
-        let set = pool.allocate(pass.set_layout()).unwrap();
-        let resources = ShadeResources {
-            table: engine.table(),
-            lights: Resource::buffer(light_buffer.handle()),
-            light_vertices: Resource::buffer(vertices.handle()),
-            planes: [
-                (Plane::Position, read(&depth)),
-                (Plane::Normal, read(&normal)),
-                (Plane::BaseColor, read(&color)),
-            ]
-            .into(),
-            radiance: Resource::StorageImage { view: radiance.view() },
-            lobe_horizons: Some(Resource::buffer(horizons.handle())),
-            tile_lists,
-            ..ShadeResources::default()
-        };
-        pass.write_set(set, &resources).unwrap();
-        // Frames with tiles have their lists in turn
-        for frame in frames {
-            let frame = ShadeFrame { lights: packed.summary(), tile_lists, ..*frame };
-            host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
-        }
-    }
-    let found: Vec<[f32; 4]> = radiance.download(Usage::COMPUTE_WRITE).unwrap();
-    found.into_iter().map(Vec4::from_array).collect()
-}
-
-fn texels() -> impl Iterator<Item = [u32; 2]> {
-    (0..TEXELS[1]).flat_map(|y| (0..TEXELS[0]).map(move |x| [x, y]))
+    let Material { base_color, roughness, metalness, .. } = material();
+    let planes = planes(engine, TEXELS, &|plane, _| match plane {
+        Plane::Normal => Some(Vec3::Z.extend(roughness)),
+        Plane::BaseColor => Some(base_color.extend(metalness)),
+        _ => None,
+    });
+    let radiance = radiance(engine, TEXELS, BEFORE);
+    let lights = LightBuffers::new(engine, &lights(), DVec3::ZERO);
+    let resources = ShadeResources {
+        planes: reads(&planes).with(Plane::Position, Some(read(&depth))),
+        radiance: store(&radiance),
+        ..lights.resources(engine)
+    };
+    let summary = lights.packed.summary();
+    let frames: Vec<_> = frames.iter().map(|frame| ShadeFrame { lights: summary, ..*frame }).collect();
+    let tiles = tiles.then_some(TileOptions { least_quads: 0, ..TileOptions::default() });
+    let info = ShadePassInfo { tiles, table_size: engine.table_size(), ..options.into() };
+    // SAFETY: `run` waits, and the pass is dropped before the engine.
+    let pass = unsafe { ShadePass::new(engine.context(), info) }.unwrap();
+    // Frames with tiles have their lists in turn
+    run(engine, &pass, &resources, TEXELS, &frames, Descriptors::Sets);
+    stored_in(&radiance)
 }
 
 /// The largest difference from the oracle, of pixels that some shot has; others are as they were.
 fn worst(options: ShadeOptions, shots: &[Shot], found: &[Vec4]) -> f64 {
-    let (table, lights, surface) = (arealight::LightTable::ggx(), lights(), dielectric());
+    let (table, lights, surface) = (LightTable::ggx(), lights(), dielectric());
     let (mut worst, mut lit) = (0.0_f64, 0);
-    for (pixel, found) in texels().zip(found) {
+    for (pixel, found) in texels(TEXELS).zip(found) {
         let Some(shot) = shots.iter().find(|shot| shot.has(pixel, 1)) else {
             assert_eq!(*found, BEFORE, "{pixel:?} is in no frame");
             continue;
@@ -215,7 +179,7 @@ fn worst(options: ShadeOptions, shots: &[Shot], found: &[Vec4]) -> f64 {
 }
 
 /// The floor's surface: the kernel's own reflectance of dielectrics.
-fn dielectric() -> arealight_oracle::material::Surface {
+fn dielectric() -> Surface {
     Material { dielectric_f0: Vec3::splat(0.04), dielectric_f90: 1.0, ..material() }.surface()
 }
 

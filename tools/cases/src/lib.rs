@@ -10,7 +10,6 @@
 //! | [`hard`] | polygons and ellipses that break form factors in float32, with their truth |
 
 #![allow(clippy::missing_errors_doc, clippy::missing_panics_doc)] // what the types say
-
 #![forbid(unsafe_code)]
 
 pub mod answers;

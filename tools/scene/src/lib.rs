@@ -30,7 +30,6 @@
 //! [`SceneBuffers`] makes them `f32` relative to an origin.
 
 #![allow(clippy::missing_errors_doc, clippy::missing_panics_doc)] // what the types say
-
 #![forbid(unsafe_code)]
 
 mod accessor;

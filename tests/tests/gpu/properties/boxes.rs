@@ -1,10 +1,8 @@
 //! The inside of a box.
 
 use super::{COUNT, lambert, view};
-use arealight::LightTable;
-use arealight_engine::EvalPoint;
-use arealight_tests::{Comparison, Level, Property, Random, TestEngine, glossy_surface, point};
-use glam::DVec3;
+use arealight_tests::Property;
+use arealight_tests::prelude::*;
 
 /// The faces of a box around the origin, fronts inwards.
 fn faces_of_a_box(low: DVec3, high: DVec3) -> Vec<Vec<DVec3>> {

@@ -2,9 +2,8 @@
 
 use super::{COUNT, PATHS, TABLE, lambert, outline, view};
 use arealight::gpu::GpuLight;
-use arealight::{Effects, Horizon};
-use arealight_tests::{Cases, Comparison, Level, Path, Property, Random, TestEngine, glossy_surface, point};
-use glam::{DQuat, DVec3};
+use arealight_tests::prelude::*;
+use arealight_tests::{Path, Property};
 
 /// Steps of a light that rises over the horizon.
 const STEPS: usize = 40_000;

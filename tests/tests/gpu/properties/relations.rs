@@ -1,9 +1,8 @@
 //! What relates the form factors of an outline and of others that are made of it.
 
 use super::{outline, with_outline};
-use arealight_engine::EvalPoint;
-use arealight_tests::{Path, Random, glossy_surface, lambert_surface, point};
-use glam::{DQuat, DVec3};
+use arealight_tests::Path;
+use arealight_tests::prelude::*;
 
 /// A relation between the form factors of a group of lights: the given one, then the others.
 pub struct Relation {

@@ -3,10 +3,8 @@
 
 use super::{COUNT, PATHS, lambert, outline};
 use arealight::gpu::GpuLight;
-use arealight::{FormFactor, Horizon};
-use arealight_engine::EvalPoint;
-use arealight_tests::{Comparison, Level, Property, Random, TestEngine};
-use glam::DVec3;
+use arealight_tests::Property;
+use arealight_tests::prelude::*;
 
 /// How much farther a light's farthest vertex is from the second center than from the first.
 const STEP: f64 = 8e-6;
