@@ -125,11 +125,7 @@ fn arguments(kind: Kind) -> Vec<ShapeArguments> {
 type List = (ListPass<[f32; 4], u32>, [Buffer; 2]);
 
 /// Makes a method's list.
-fn list(
-    passes: &Passes,
-    method: &ShapeMethod,
-    repeats: u32,
-) -> Result<List, EngineError> {
+fn list(passes: &Passes, method: &ShapeMethod, repeats: u32) -> Result<List, EngineError> {
     let host = passes.host();
     let ends = if let Kind::Tube(ends) = method.kind { ends as u32 } else { 0 };
     let inputs = [

@@ -180,8 +180,9 @@ impl TestEngine {
         }
     }
 
-    /// Asserts that every layout reads a plane where an effect needs it: texels that mean none change nothing,
-    /// and others do. In our own layout it shows what the surface at [`under_lamp`] does, within `bound`.
+    /// Asserts that every layout reads a plane where an effect needs it: texels that mean none change
+    /// nothing, and others do. In our own layout it shows what the surface at [`under_lamp`] does, within
+    /// `bound`.
     pub fn assert_plane(
         &self,
         (plane, effects): (Plane, Effects),
