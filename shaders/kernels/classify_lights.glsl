@@ -34,6 +34,9 @@ TileLight polygon_light(uint index) {
     light.radiance = sum_of(record.radiance);
     light.area = record.area * (record.radius * record.radius);
     light.least = light.area;
+    if (HAS_PROFILES && (record.flags & LIGHT_PROFILE) != 0u) {
+        light.least = 0.0;
+    }
     // What an image shows may be brighter than the light, or black
     bool has_image = (EFFECTS & EFFECT_TEXTURED) != 0u && record.texture_layer != NO_LIGHT_TEXTURE;
     light.over_half_vectors = AREALIGHT_HAS_HALF_VECTORS && !has_image;
@@ -70,6 +73,20 @@ TileLight shape_light(uint index) {
     return light;
 }
 
+// Whether all of a tile is outside of the cone of a light with a profile; `before`: how far its farthest pixel
+// is before the light's center. The light shines within an angle of its normal.
+bool is_outside_cone(uint index, TileLight light, float before) {
+    uint flags = lights[index].flags;
+    if ((flags & LIGHT_PROFILE) == 0u || light.two_sided || light.normal == vec3(0.0)) {
+        return false;
+    }
+    TileBox position = tile_position();
+    vec3 side = max(max(position.low - light.center, light.center - position.high), vec3(0.0));
+    float nearest = sqrt(dot(side, side)) - light.radius - light.margin;
+    float highest = before + TILE_FLATNESS * light.radius + light.margin;
+    return nearest > 0.0 && highest < float(flags >> 16) * (1.0 / 65535.0) * nearest;
+}
+
 // A light of the frame, as the pixels of the tile have it before them.
 TileLight tile_light(uint index) {
     TileLight light;
@@ -94,6 +111,9 @@ vec2 contribution(uint index) {
     vec2 behind = vec2(dot(light.normal, light.center)) - box_dot(tile_position(), light.normal).yx;
     bool is_behind = light.normal != vec3(0.0) && !light.two_sided
                   && behind.x > TILE_FLATNESS * light.radius + light.margin;
+    if (HAS_PROFILES && index < light_count()) {
+        is_behind = is_behind || is_outside_cone(index, light, -behind.x);
+    }
 
     TileLightHeights heights;
     heights.surface = tile_heights(tile_planes(SURFACE_PAIR), light);

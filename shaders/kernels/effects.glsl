@@ -46,15 +46,19 @@ const uint EFFECT_TRANSMISSION = 4194304u;
 const uint EFFECT_THIN_FILM = 8388608u;
 // Some thin surface is glass: for the host, which has the pass over the other side reflect specularly.
 const uint EFFECT_GLASS = 16777216u;
+// Some light has a profile.
+const uint EFFECT_PROFILE = 33554432u;
 
-// Some polygon is not a convex quad without an image: Effects::BEYOND_QUADS in Rust.
-const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
+// Some polygon is not a convex quad without an image or a profile: Effects::BEYOND_QUADS in Rust.
+const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH
+                                | EFFECT_PROFILE;
 // Some light is a disk, sphere or tube: Effects::SHAPES in Rust.
 const uint EFFECTS_OF_SHAPES = EFFECT_ELLIPSE | EFFECT_SPHERE | EFFECT_TUBE;
 
 // Which kinds of lights there may be, apart from convex quads without an image.
 const bool HAS_POLYGONS = (EFFECTS & EFFECTS_OF_POLYGONS) != 0u;
 const bool HAS_MESHES = (EFFECTS & EFFECT_MESH) != 0u;
+const bool HAS_PROFILES = (EFFECTS & EFFECT_PROFILE) != 0u;
 const bool HAS_SHAPES = (EFFECTS & EFFECTS_OF_SHAPES) != 0u;
 const bool HAS_DISKS = (EFFECTS & EFFECT_ELLIPSE) != 0u;
 const bool HAS_SPHERES = (EFFECTS & EFFECT_SPHERE) != 0u;
@@ -100,6 +104,7 @@ const int LOBES_FORMULA = 1;
 #define AREALIGHT_LIGHT_TEXTURES 1
 #define AREALIGHT_POLYGONS 1
 #define AREALIGHT_MESHES 1
+#define AREALIGHT_SHAPED 1
 #define AREALIGHT_DISKS 1
 #define AREALIGHT_SPHERES 1
 #define AREALIGHT_TUBES 1

@@ -42,6 +42,12 @@ ArealightPolygonLight load_polygon(ArealightGpuLight record) {
                                  (record.flags & LIGHT_QUAD) != 0u);
 }
 
+#if AREALIGHT_SHAPED
+ArealightShapedLight load_shaped(ArealightGpuLight record) {
+    return ArealightShapedLight(load_polygon(record), record.radiance, record.profile);
+}
+#endif
+
 ArealightMeshLight load_mesh(ArealightGpuLight record) {
     return ArealightMeshLight(record.radiance, record.center, record.first_vertex, record.vertex_count,
                               (record.flags & LIGHT_TWO_SIDED) != 0u);

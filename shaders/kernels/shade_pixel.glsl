@@ -45,7 +45,9 @@ void add_light_at(inout PixelRadiance sum, uint index, vec3 radiance, ArealightR
 
 void shade_polygon(inout PixelRadiance sum, ArealightPoint point, uint index) {
     ArealightGpuLight record = lights[index];
-    if (HAS_MESHES && (record.flags & LIGHT_MESH) != 0u) {
+    if (HAS_PROFILES && (record.flags & LIGHT_PROFILE) != 0u) {
+        add_light_at(sum, index, record.radiance, arealight_reflected(point, load_shaped(record)));
+    } else if (HAS_MESHES && (record.flags & LIGHT_MESH) != 0u) {
         add_light_at(sum, index, record.radiance, arealight_reflected(point, load_mesh(record)));
     } else {
         add_light_at(sum, index, record.radiance, arealight_reflected(point, load_polygon(record)));

@@ -10,6 +10,7 @@
 
 #include "table_image.glsl"
 #include "arealight/material.glsl"
+#include "arealight/lights/profile.glsl"
 #include "arealight/shadows/ray_origin.glsl"
 #include "arealight/shadows/sequence.glsl"
 #define PICKS_ACCESS readonly
@@ -110,6 +111,28 @@ float penumbra_width(PickedLight light, float part, float distance, float alpha)
     return min(size * part / max(1.0 - part, 1e-3), size * 16.0);
 }
 
+// A ray to a light with a profile: of several to all of the light one, by the profile's factor.
+bool draw_through_profile(ArealightGpuLight record, ArealightShadowOutline outline, mat3 to_frame, mat3 space,
+                          vec2 random, out ArealightShadowRay ray) {
+    const int CANDIDATES = 8;
+    float choice = fract(dot(random, vec2(37.31, 91.73)));
+    float sum = 0.0;
+    bool is_drawn = false;
+    for (int index = 0; index < CANDIDATES; index++) {
+        ArealightShadowRay one;
+        // Spread over the light: the sequence of the plastic number
+        vec2 place = fract(random + float(index) * vec2(0.75487767, 0.56984029));
+        if (arealight_draw_ray(outline, to_frame, space, place, one)) {
+            float factor = arealight_profile_factor(record.profile, record.normal, one.distance * one.direction);
+            if (factor > 0.0 && arealight_choose(choice, sum, factor)) {
+                ray = one;
+                is_drawn = true;
+            }
+        }
+    }
+    return is_drawn;
+}
+
 // What a ray finds: in x 1 if it arrives, else 0, and the width of the penumbra in y.
 vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec2 random) {
     PickedLight light = picked_light(pick, point.position);
@@ -118,7 +141,14 @@ vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec2 rand
     mat3 space = arealight_lobe_at(point, lobe).space;
     ArealightShadowOutline outline = chosen_outline(light, space * point.to_frame, random.x);
     ArealightShadowRay ray;
-    if (!arealight_draw_ray(outline, point.to_frame, space, random, ray)) {
+    bool is_drawn;
+    uint index = pick & PICK_INDEX;
+    if (HAS_PROFILES && (pick & PICK_SHAPE) == 0u && (lights[index].flags & LIGHT_PROFILE) != 0u) {
+        is_drawn = draw_through_profile(lights[index], outline, point.to_frame, space, random, ray);
+    } else {
+        is_drawn = arealight_draw_ray(outline, point.to_frame, space, random, ray);
+    }
+    if (!is_drawn) {
         return vec2(1.0, 0.0);
     }
     // What is below the surface does not arrive; where its geometry is above its shading, the ray meets it

@@ -79,6 +79,7 @@ pub fn lights(kind: LightKind) -> Vec<Light> {
             two_sided: kind == LightKind::TwoSided,
             texture: (kind == LightKind::Textured)
                 .then(|| LightTexture { layer: index as u32, uvs: corners.to_vec() }),
+            ..Light::default()
         }
     };
     FRAMES.iter().enumerate().map(light).collect()

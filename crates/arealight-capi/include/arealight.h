@@ -102,6 +102,9 @@
 // AREALIGHT_EFFECT_GLOSSY, and put the part of its base colour that is not diffused into its metalness.
 #define AREALIGHT_EFFECT_GLASS 16777216
 
+// Some light has a profile.
+#define AREALIGHT_EFFECT_PROFILE 33554432
+
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 

@@ -51,6 +51,8 @@ pub const AREALIGHT_EFFECT_THIN_FILM: u32 = 8388608;
 /// Some thin surface is glass. A pass ignores it: give the pass with AREALIGHT_EFFECT_TRANSMISSION
 /// AREALIGHT_EFFECT_GLOSSY, and put the part of its base colour that is not diffused into its metalness.
 pub const AREALIGHT_EFFECT_GLASS: u32 = 16777216;
+/// Some light has a profile.
+pub const AREALIGHT_EFFECT_PROFILE: u32 = 33554432;
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
 /// As EXACT, and relative precision for lights that look small.

@@ -214,6 +214,7 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
         radiance: Vec3::from_array(light.radiance),
         two_sided: read_flag(light.two_sided, &field("two_sided"))?,
         texture: textured.then_some(LightTexture { layer: light.texture_layer, uvs }),
+        profile: None,
         shape,
     };
     if !holes.is_empty() {

@@ -119,6 +119,7 @@ mod tests {
             (c::AREALIGHT_EFFECT_TRANSMISSION, Effects::TRANSMISSION),
             (c::AREALIGHT_EFFECT_THIN_FILM, Effects::THIN_FILM),
             (c::AREALIGHT_EFFECT_GLASS, Effects::GLASS),
+            (c::AREALIGHT_EFFECT_PROFILE, Effects::PROFILE),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");
         }

@@ -7,6 +7,7 @@ mod diffuse;
 pub mod footprint;
 mod half_vectors;
 pub mod poses;
+mod profiled;
 mod rescattered;
 mod shapes;
 mod sheen;
@@ -25,7 +26,9 @@ use crate::material::Surface;
 use crate::polygon::{above_horizon, emitted, form_factor, transformed_form_factor};
 use crate::texture::Texture;
 use arealight::table::share_above_surface;
-use arealight::{Horizon, Light, LightFault, LightTable, Lobes, Quality, SpecularLobes, TableSample};
+use arealight::{
+    Horizon, Light, LightFault, LightTable, Lobes, Profile, Quality, SpecularLobes, TableSample,
+};
 use coat::CoatLobe;
 use glam::{DMat3, DVec3};
 use half_vectors::HalfVectors;
@@ -46,16 +49,20 @@ pub struct RelativeLight {
     pub two_sided: bool,
     /// What multiplies the radiance.
     pub image: Option<ShownImage>,
+    /// How it changes with the angle from the front.
+    pub profile: Option<Profile>,
 }
 
 impl RelativeLight {
     /// A polygon as seen from `position`, of one colour: see [`RelativeLight::textured`].
     pub fn new(light: &Light, position: DVec3) -> Self {
+        let light = light.outlined();
         Self {
             vertices: light.shape.vertices().iter().map(|v| *v - position).collect(),
             radiance: light.radiance.as_dvec3(),
             two_sided: light.two_sided,
             image: None,
+            profile: light.profile.clone(),
         }
     }
 
@@ -125,7 +132,11 @@ fn uncoated_truth(
     } else {
         Region::default()
     };
-    let shown = |direction| image.as_ref().map_or(DVec3::ONE, |image| image.color(direction));
+    let shown = |direction| {
+        let color = image.as_ref().map_or(DVec3::ONE, |image| image.color(direction));
+        let factor = light.profile.as_ref().map(|it| profiled::factor_in(it, &vertices, direction));
+        color * factor.unwrap_or(1.0)
+    };
     let signed = reflected(surface, &frame, &region, settings, shown);
     // A two-sided light seen from behind has a negative solid angle
     Truth {
@@ -333,8 +344,13 @@ pub fn ltc_on(
         let share = if both_horizons { above_surface } else { 1.0 };
         match &image {
             None => {
-                let form_factor = emitted(transformed_form_factor(inverse, &visible), light.two_sided);
-                DVec3::splat((form_factor / share).min(1.0))
+                let signed = match &light.profile {
+                    None => transformed_form_factor(inverse, &visible),
+                    Some(profile) => profiled::profiled(profile, &vertices, &visible, inverse),
+                };
+                // A profile may be brighter than 1
+                let most = light.profile.as_ref().map_or(1.0, Profile::greatest);
+                DVec3::splat((emitted(signed, light.two_sided) / share).min(most))
             }
             Some(image) => {
                 let signed = transformed_image_integral(inverse, &vertices, image, both_horizons);
@@ -342,7 +358,8 @@ pub fn ltc_on(
             }
         }
     };
-    let over_half_vectors = quality.specular_lobes == SpecularLobes::HalfVectors && image.is_none();
+    let over_half_vectors =
+        quality.specular_lobes == SpecularLobes::HalfVectors && image.is_none() && light.profile.is_none();
     let glossy = if over_half_vectors {
         half_vector_part(quality, table, with_film, &frame, &visible, light.two_sided)
     } else {
@@ -352,7 +369,9 @@ pub fn ltc_on(
     let (inverse, albedo) = diffuse::lobe(quality, table, surface, &frame);
     let shown = match &image {
         _ if albedo == DVec3::ZERO => DVec3::ZERO,
-        None if inverse == DMat3::IDENTITY => DVec3::splat(emitted(form_factor(&vertices), light.two_sided)),
+        None if inverse == DMat3::IDENTITY && light.profile.is_none() => {
+            DVec3::splat(emitted(form_factor(&vertices), light.two_sided))
+        }
         Some(image) if inverse == DMat3::IDENTITY => {
             let signed = transformed_image_integral(&inverse, &vertices, image, false);
             signed.to_array().map(|channel| emitted(channel, light.two_sided)).into()

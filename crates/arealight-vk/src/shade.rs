@@ -388,9 +388,8 @@ fn check_lights(lights: LightSummary) -> Result<(), Error> {
     if quad_count > light_count {
         return wrong(format!("has {quad_count} quads of {light_count} lights"));
     }
-    let beyond_quads = Effects::POLYGON | Effects::TEXTURED | Effects::MESH;
     for (count, effects_of, kind) in [
-        (light_count - quad_count, beyond_quads, "lights beyond quads"),
+        (light_count - quad_count, Effects::BEYOND_QUADS, "lights beyond quads"),
         (shape_count, Effects::SHAPES, "shapes"),
     ] {
         if count > 0 && !effects.intersects(effects_of) {

@@ -73,12 +73,17 @@ bitflags::bitflags! {
         /// pass over the other side has the GLOSSY lobe then, and the metalness of what it reads is the part
         /// of its base colour that is let through so ([`Effects::passes`]). A pass itself ignores it.
         const GLASS = 1 << 24;
+        /// Some light has a profile ([`Light::profile`](crate::Light::profile)).
+        const PROFILE = 1 << 25;
     }
 }
 
 impl Effects {
     /// Every kind of light but polygons and meshes.
     pub const SHAPES: Self = Self::ELLIPSE.union(Self::SPHERE).union(Self::TUBE);
+
+    /// Any of these is of lights that are no convex quads without an image or a profile.
+    pub const BEYOND_QUADS: Self = Self::POLYGON.union(Self::TEXTURED).union(Self::MESH).union(Self::PROFILE);
 
     /// Every lobe: without any of these surfaces are black.
     pub const LOBES: Self = Self::DIFFUSE.union(Self::GLOSSY).union(Self::COAT).union(Self::SHEEN);
@@ -150,6 +155,7 @@ impl Effects {
             (Self::TRANSMISSION, "transmission"),
             (Self::THIN_FILM, "thin_film"),
             (Self::GLASS, "glass"),
+            (Self::PROFILE, "profile"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))

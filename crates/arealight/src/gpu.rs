@@ -21,13 +21,13 @@ pub struct GpuLight {
     pub area: f32,
     /// How many rows the outline has, or the faces of a mesh.
     pub vertex_count: u32,
-    /// [`GpuLight::TWO_SIDED`], [`GpuLight::FLAT`], [`GpuLight::MESH`] and [`GpuLight::QUAD`], where they are
-    /// so.
+    /// [`GpuLight::TWO_SIDED`], [`GpuLight::FLAT`], [`GpuLight::MESH`], [`GpuLight::QUAD`] and
+    /// [`GpuLight::PROFILE`], where they are so.
     pub flags: u32,
     /// Layer of the light textures, or [`GpuLight::NO_TEXTURE`].
     pub texture_layer: u32,
-    /// Zero.
-    pub reserved: u32,
+    /// The first row of its profile in the vertex buffer, with [`GpuLight::PROFILE`]; else zero.
+    pub profile: u32,
 }
 
 impl GpuLight {
@@ -40,6 +40,10 @@ impl GpuLight {
     /// It is convex and has at most four vertices
     /// ([`LightShape::is_convex_quad`](crate::LightShape::is_convex_quad)).
     pub const QUAD: u32 = 8;
+    /// It has a profile: the upper half of the flags is the cosine, of 65535, of an angle that it ends within.
+    pub const PROFILE: u32 = 16;
+    /// Where that cosine begins.
+    pub const PROFILE_END_SHIFT: u32 = 16;
     /// No texture.
     pub const NO_TEXTURE: u32 = u32::MAX;
 }

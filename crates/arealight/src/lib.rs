@@ -57,6 +57,8 @@
 //! | [`pyramid`] | how large and how blurred the levels of a light's texture are |
 //! | [`effects`] | what lights and surfaces need, and nothing else |
 //! | [`quality`] | the quality levels |
+//! | [`profile`] | how a light's radiance changes with the angle from its front |
+//! | [`ies`] | luminaires of LM-63 files, as profiles |
 //! | [`reach`] | how far from a light it is of any matter |
 //! | [`blockers`] | what blocks light, for shadow rays: triangles in a hierarchy |
 //! | [`table`] | the fitted table, with a float64 twin of the shader's lookup |
@@ -72,6 +74,7 @@ pub mod blockers;
 pub mod effects;
 pub mod gpu;
 pub mod holes;
+pub mod ies;
 pub mod kernels;
 pub mod light;
 pub mod light_fault;
@@ -82,6 +85,7 @@ mod output;
 pub mod packed_lights;
 pub mod plan;
 pub mod planes;
+pub mod profile;
 pub mod pyramid;
 pub mod quality;
 pub mod reach;
@@ -98,6 +102,8 @@ pub use effects::Effects;
 /// agree.
 pub use glam;
 #[doc(inline)]
+pub use ies::{IesError, IesProfile};
+#[doc(inline)]
 pub use light::Light;
 #[doc(inline)]
 pub use light_fault::{LightError, LightFault};
@@ -109,6 +115,8 @@ pub use light_texture::{LightTexture, TextureMap};
 pub use packed_lights::{LightSummary, PackedLights};
 #[doc(inline)]
 pub use planes::{Plane, Planes};
+#[doc(inline)]
+pub use profile::Profile;
 #[doc(inline)]
 pub use pyramid::PyramidSize;
 #[doc(inline)]

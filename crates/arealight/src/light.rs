@@ -2,8 +2,10 @@
 
 use crate::light_fault::{LightError, LightFault};
 use crate::light_texture::{LightTexture, TextureMap};
-use crate::{Effects, LightShape};
+use crate::{Effects, LightShape, Profile};
 use glam::{DVec3, Vec3};
+use std::borrow::Cow;
+use std::f64::consts::TAU;
 
 /// A light of constant radiance, or a textured one.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -18,6 +20,9 @@ pub struct Light {
     /// An image that multiplies the radiance of a polygon or disk; the back shows it mirrored, as a slide
     /// does.
     pub texture: Option<LightTexture>,
+    /// How the radiance changes with the angle from the front: of a flat, convex polygon or a disk, which is
+    /// shaded as [`Light::DISK_CORNERS`] vertices then. The back of a two-sided light has it, too.
+    pub profile: Option<Profile>,
     /// What shines.
     pub shape: LightShape,
 }
@@ -28,8 +33,8 @@ impl Light {
     /// # Errors
     /// [`LightFault`] names the field that is wrong.
     pub fn validate(&self) -> Result<(), LightFault> {
-        if self.shape.is_polygonal() {
-            self.mapped().map(drop)
+        if self.shape.is_polygonal() || matches!(self.outlined(), Cow::Owned(_)) {
+            self.outlined().mapped().map(drop)
         } else {
             self.pack_shape(DVec3::ZERO).map(drop)
         }
@@ -48,6 +53,17 @@ impl Light {
         }
         self.shape.check_faces()?;
         self.check_radiance()?;
+        if let Some(profile) = &self.profile {
+            if !(self.radiance * profile.greatest() as f32).is_finite() {
+                return Err(LightFault::BadRadiance { value: self.radiance });
+            }
+            if self.shape.is_mesh() {
+                return Err(LightFault::ProfileNotFlat);
+            }
+            if !self.shape.is_convex() {
+                return Err(LightFault::ProfileConcave);
+            }
+        }
         self.texture.as_ref().map(|texture| texture.map(&self.shape)).transpose()
     }
 
@@ -82,13 +98,35 @@ impl Light {
         })
     }
 
+    /// The vertices that a disk with a profile has.
+    pub const DISK_CORNERS: u32 = 12;
+
+    /// The light as it is packed: of a disk with a profile the polygon of its area that stands for it.
+    pub fn outlined(&self) -> Cow<'_, Self> {
+        let LightShape::Disk { center, axis_u, axis_v } = self.shape else { return Cow::Borrowed(self) };
+        if self.profile.is_none() || self.texture.is_some() {
+            return Cow::Borrowed(self);
+        }
+        let step = TAU / f64::from(Self::DISK_CORNERS);
+        let scale = (step / step.sin()).sqrt();
+        let vertices = (0..Self::DISK_CORNERS).map(|corner| {
+            let (sin, cos) = (f64::from(corner) * step).sin_cos();
+            center + (axis_u * cos + axis_v * sin) * scale
+        });
+        Cow::Owned(Self { shape: LightShape::Polygon(vertices.collect()), ..self.clone() })
+    }
+
     /// The effects that the light needs.
     pub fn effects(&self) -> Effects {
+        if let Cow::Owned(polygon) = self.outlined() {
+            return polygon.effects();
+        }
         let textured = self.texture.is_some();
         // A tube's inside is not shaded
         let two_sided = self.two_sided && !matches!(self.shape, LightShape::Tube { .. });
         let mut effects = Effects::empty();
         effects.set(Effects::TWO_SIDED, two_sided);
+        effects.set(Effects::PROFILE, self.profile.is_some());
         match self.shape {
             LightShape::Polygon(_) | LightShape::Mesh { .. } => {
                 effects.set(Effects::POLYGON, !self.shape.is_convex_quad());

@@ -213,6 +213,20 @@ pub enum LightFault {
     /// The texture coordinates lie on a line, or the polygon's vertices do.
     #[error("texture: uvs: they span no area; a light of one colour needs no texture")]
     TextureFlat,
+    /// A profile's pairs or levels.
+    #[error("profile: {reason}")]
+    BadProfile {
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// Only flat lights have a front to measure a profile's angles from.
+    #[error(
+        "profile: of a mesh, sphere, tube or disk with an image: give it to flat faces that are lights of their own"
+    )]
+    ProfileNotFlat,
+    /// The outline of a light with a profile is clipped by disks, edge by edge.
+    #[error("profile: of an outline that is not flat and convex: cut it into convex lights")]
+    ProfileConcave,
     /// Its texture is a layer that the light textures do not have.
     #[error("texture: layer {layer} is not there: there are {layers}")]
     NoTextureLayer {

@@ -162,8 +162,13 @@ impl LightShape {
     /// four vertices: what is shaded without [`Effects::POLYGON`](crate::Effects::POLYGON), as if its
     /// vertices were moved by that much.
     pub fn is_convex_quad(&self) -> bool {
+        self.vertices().len() <= 4 && self.is_convex()
+    }
+
+    /// Whether it is a polygon that is convex and flat, both to a ten-thousandth of its size.
+    pub fn is_convex(&self) -> bool {
         let vertices = self.vertices();
-        if !(3..=4).contains(&vertices.len()) || self.is_mesh() {
+        if vertices.len() < 3 || self.is_mesh() {
             return false;
         }
         let normal = self.area_vector().normalize_or_zero();

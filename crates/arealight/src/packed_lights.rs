@@ -4,13 +4,17 @@ use crate::gpu::{GpuLight, GpuShape};
 use crate::light_fault::{LightError, LightFault};
 use crate::light_shape::area_of;
 use crate::light_texture::TextureMap;
-use crate::{Effects, Light, LightShape};
+use crate::profile::ProfilePlace;
+use crate::{Effects, Light, LightShape, Profile};
 use glam::DVec3;
 
 mod shapes;
 
 /// Rows of a texture's place in the vertex buffer.
 const TEXTURE_ROWS: usize = 4;
+
+/// The most rows of a profile, and of the disk that has it.
+const PROFILE_ROWS: usize = 2 + Profile::MAX_LEVELS as usize + Profile::PIECES + Light::DISK_CORNERS as usize;
 
 /// Lights as the GPU reads them, relative to an origin. The arrays are uploaded to a buffer each;
 /// [`PackedLights::summary`] goes to the frame.
@@ -21,7 +25,10 @@ pub struct PackedLights {
     /// Of each of these its vertices' positions relative to its center, in xyz. A mesh has before each face's
     /// vertices a row with the face's unit normal in xyz and their count in w. After the vertices of a
     /// textured light come four rows, its image's place: (corner, lowest u), (axis of u, lowest v), (axis of
-    /// v, extent in u), (extent in v, 0, 0, 0), see [`TextureMap`].
+    /// v, extent in u), (extent in v, 0, 0, 0), see [`TextureMap`]. After those of a light with a profile come
+    /// its rows: (scale, levels, piece scale, 0), of each level its [`ProfilePlace`](crate::profile::ProfilePlace) and
+    /// the squared tangent of its angle, of each piece's beginning its place with the slope last, and the end
+    /// with slope 0.
     pub vertices: Vec<[f32; 4]>,
     /// One record per disk, sphere or tube: by kind in this order, else in the given one.
     pub shapes: Vec<GpuShape>,
@@ -74,7 +81,7 @@ impl PackedLights {
         indices.sort_by_key(|index| rank(effects[*index]));
         let mut packed = Self::default();
         for index in indices {
-            let light = &lights[index];
+            let light = &*lights[index].outlined();
             let pushed = if light.shape.is_polygonal() {
                 packed.order.push(index as u32);
                 packed.push(light, origin)
@@ -122,6 +129,7 @@ impl PackedLights {
         let shift = self.vertices.len() as u32;
         self.lights.extend(other.lights.into_iter().map(|mut light| {
             light.first_vertex += shift;
+            light.profile += if light.flags & GpuLight::PROFILE == 0 { 0 } else { shift };
             light
         }));
         self.vertices.extend(other.vertices);
@@ -158,10 +166,12 @@ impl PackedLights {
             // The texture's axes keep their precision as the vertices do
             self.push_texture(map, map.corner - origin - center.as_dvec3());
         }
+        let profile = light.profile.as_ref().map_or(0, |profile| self.push_profile(profile));
+        let greatest = light.profile.as_ref().map_or(1.0, Profile::greatest);
         let area_vector = shape.area_vector();
         let area = area_vector.length() / radius.powi(2);
         self.lights.push(GpuLight {
-            radiance: light.radiance.to_array(),
+            radiance: (light.radiance * greatest as f32).to_array(),
             first_vertex,
             center: center.to_array(),
             radius: (radius as f32).next_up(),
@@ -170,7 +180,7 @@ impl PackedLights {
             vertex_count,
             flags: flags(light),
             texture_layer: light.texture.as_ref().map_or(GpuLight::NO_TEXTURE, |texture| texture.layer),
-            reserved: 0,
+            profile,
         });
         Ok(())
     }
@@ -187,6 +197,36 @@ impl PackedLights {
             self.vertices.extend(vertices.iter().map(|offset| offset.as_vec3().extend(0.0).to_array()));
             first += face.len();
         }
+    }
+
+    /// The rows of a profile, its greatest factor being 1, and where they begin.
+    fn push_profile(&mut self, profile: &Profile) -> u32 {
+        let first = self.vertices.len() as u32;
+        let greatest = profile.greatest();
+        let places: Vec<ProfilePlace> = profile
+            .places()
+            .into_iter()
+            .map(|it| ProfilePlace { factor: it.factor / greatest, sum: it.sum / greatest, ..it })
+            .collect();
+        let row = |place: ProfilePlace, number: f64| {
+            [place.x as f32, place.factor as f32, place.sum as f32, number as f32]
+        };
+        self.vertices.push([
+            profile.scale() as f32,
+            profile.levels().len() as f32,
+            profile.piece_scale() as f32,
+            0.0,
+        ]);
+        self.vertices.extend(profile.levels().iter().map(|cosine| {
+            let tangents = (1.0 - cosine * cosine) / (cosine * cosine);
+            row(profile.place(&places, *cosine), tangents)
+        }));
+        self.vertices.extend(places.windows(2).map(|pair| {
+            let slope = (pair[1].factor - pair[0].factor) / (pair[1].x - pair[0].x);
+            row(pair[0], slope)
+        }));
+        self.vertices.extend(places.last().map(|place| row(ProfilePlace { factor: 0.0, ..*place }, 0.0)));
+        first
     }
 
     /// The rows of a texture's place, whose corner is `corner` from the light's center.
@@ -220,6 +260,7 @@ fn check_rows(lights: &[Light]) -> Result<(), LightError> {
     let mut count = 0;
     for (index, light) in lights.iter().enumerate() {
         count += light.shape.vertices().len() + light.shape.faces().len() + TEXTURE_ROWS;
+        count += if light.profile.is_some() { PROFILE_ROWS } else { 0 };
         if u32::try_from(count).is_err() {
             return Err(LightFault::TooManyVertices { count }.of(index, &light.name));
         }
@@ -233,6 +274,9 @@ fn flags(light: &Light) -> u32 {
         | flag(light.shape.is_flat(), GpuLight::FLAT)
         | flag(light.shape.is_mesh(), GpuLight::MESH)
         | flag(light.shape.is_convex_quad(), GpuLight::QUAD)
+        | light.profile.as_ref().map_or(0, |it| {
+            GpuLight::PROFILE | ((it.end() * f64::from(u16::MAX)) as u32) << GpuLight::PROFILE_END_SHIFT
+        })
 }
 
 #[cfg(test)]

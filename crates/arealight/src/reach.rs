@@ -3,9 +3,9 @@
 #[cfg(doc)]
 use crate::LightTable;
 use crate::light_shape::FLAT;
-use crate::{Light, LightShape};
+use crate::{Light, LightShape, Profile};
 use glam::{DVec3, Vec3};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The density a steradian of Lambert's lobe of albedo 1, where it is largest.
 pub const DIFFUSE_DENSITY: f64 = 1.0 / PI;
@@ -28,6 +28,7 @@ pub fn radius(light: &Light, threshold: f64, density: f64) -> f64 {
     let size = size_about(&light.shape);
     let brightest =
         if light.texture.is_some() { f64::INFINITY } else { f64::from(light.radiance.max_element()) };
+    let brightest = brightest * light.profile.as_ref().map_or(1.0, Profile::greatest);
     let reflected = brightest.max(0.0) * density * most_area(&light.shape, size);
     let radius = size + (reflected / threshold).sqrt();
     if radius.is_finite() { radius } else { f64::INFINITY }
@@ -40,7 +41,13 @@ pub fn bounds(light: &Light, radius: f64) -> [DVec3; 2] {
     let (center, size) = (light.shape.center(), size_about(&light.shape));
     let shines_to_one_side = light.shape.is_flat() && !light.two_sided;
     let normal = light.shape.area_vector().normalize_or_zero();
+    // Within its cone a profile's light goes no farther along an axis than the cone's direction next to it
+    let end = light.profile.as_ref().map_or(FRAC_PI_2, |profile| profile.end().acos());
     let along = |axis: f64| {
+        if shines_to_one_side && light.profile.is_some() && normal != DVec3::ZERO {
+            let beside = (axis.clamp(-1.0, 1.0).acos() - end).max(0.0);
+            return radius * (beside.cos().max(0.0) + 1e-6) + (1.0 + FLAT) * size;
+        }
         if !shines_to_one_side || axis >= 0.0 || normal == DVec3::ZERO {
             return radius;
         }

@@ -41,6 +41,9 @@
 #if AREALIGHT_MESHES
 #include "arealight/lights/mesh.glsl"
 #endif
+#if AREALIGHT_SHAPED
+#include "arealight/lights/shaped.glsl"
+#endif
 #if AREALIGHT_DISKS
 #include "arealight/lights/disk.glsl"
 #endif

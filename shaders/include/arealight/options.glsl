@@ -122,6 +122,9 @@
 #ifndef AREALIGHT_MESHES
 #define AREALIGHT_MESHES 0
 #endif
+#ifndef AREALIGHT_SHAPED
+#define AREALIGHT_SHAPED 0
+#endif
 #ifndef AREALIGHT_DISKS
 #define AREALIGHT_DISKS 0
 #endif

@@ -66,6 +66,7 @@ mod shape_frames;
 mod shape_lights;
 mod shape_points;
 mod shape_properties;
+mod shaped;
 mod shapes;
 mod sheen;
 mod slim_tubes;

@@ -44,8 +44,8 @@ fn shapes() -> Vec<Light> {
         name: name.into(),
         radiance,
         two_sided,
-        texture: None,
         shape,
+        ..Light::default()
     };
     let tube = |p0: [f64; 3], p1: [f64; 3], radius, ends| LightShape::Tube {
         p0: p0.into(),

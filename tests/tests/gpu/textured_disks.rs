@@ -44,6 +44,7 @@ fn ellipse(center: DVec3, axis_u: DVec3, axis_v: DVec3, layer: u32) -> Light {
         two_sided: false,
         texture: Some(LightTexture { layer, uvs: vec![] }),
         shape: LightShape::Disk { center, axis_u, axis_v },
+        ..Light::default()
     }
 }
 

@@ -4,8 +4,6 @@ Area lamps become lights of EXT_lights_area, where the exporter's "Punctual Ligh
 property `arealight` with the name of a shape (disk, sphere, cylinder, pipe, capsule) become that shape, about their Z axis.
 """
 
-import math
-
 from . import lamps
 
 NAME = "EXT_lights_area"
@@ -53,15 +51,13 @@ class glTF2ExportUserExtension:
 def light_of(blender_object, log):
     """The light for an area lamp, or none where it gives no light."""
     lamp = blender_object.data
-    if lamp.spread < math.pi - 1e-3:
-        log.warning(f"{blender_object.name}: its spread is less than 180 degrees: it is written as shining to all of its front")
     color, strength = emission(lamp, blender_object.name, log)
     matrix = blender_object.matrix_world.to_3x3()
     axes = [matrix.col[axis].length for axis in range(3)]
     watts = lamp.energy * strength * 2.0 ** getattr(lamp, "exposure", 0.0)
     normalize = getattr(lamp, "normalize", True)
     return lamps.area_light(
-        blender_object.name, lamp.shape, (lamp.size, lamp.size_y), axes, watts, color, normalize
+        blender_object.name, lamp.shape, (lamp.size, lamp.size_y), axes, watts, color, normalize, lamp.spread
     )
 
 

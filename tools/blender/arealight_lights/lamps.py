@@ -15,10 +15,11 @@ def area(shape, width, height):
     return part * width * height
 
 
-def area_light(name, shape, size, axes, watts, color, normalize=True):
+def area_light(name, shape, size, axes, watts, color, normalize=True, spread=math.pi):
     """The light of EXT_lights_area for an area lamp.
 
     `shape` is Blender's name for it, `size` the lamp's own width and height, `axes` the lengths of its node's three axes in the world.
+    `spread` is the angle that Cycles lets its light through in, radians; EXT_lights_area has none: other readers show all of its front.
     `watts` is its power, or, where it is not normalized, its power for each square metre; `color` is linear and multiplies it.
     """
     width, height = size[0] * axes[0], (size[0] if shape in ("SQUARE", "DISK") else size[1]) * axes[1]
@@ -42,6 +43,8 @@ def area_light(name, shape, size, axes, watts, color, normalize=True):
     else:
         light["type"] = "rect"
         light["rect"] = {"aspect": aspect}
+    if spread < math.pi - 1e-3:
+        light.setdefault("extras", {}).setdefault("arealight", {})["spread"] = spread
     return light
 
 

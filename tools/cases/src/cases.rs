@@ -9,7 +9,7 @@ mod fields;
 mod material;
 mod strict;
 
-use arealight::{Light, LightFault, LightShape, LightTexture, TextureMap, TubeEnds};
+use arealight::{Light, LightFault, LightShape, LightTexture, Profile, TextureMap, TubeEnds};
 use arealight_oracle::material::Surface;
 use arealight_oracle::shading::{RelativeLight, ShownImage};
 use arealight_oracle::texture::Texture;
@@ -81,6 +81,8 @@ pub struct CaseLight {
     pub radiance: DVec3,
     /// Whether the back emits too.
     pub two_sided: bool,
+    /// How the radiance changes with the angle from the front.
+    pub profile: Option<Profile>,
     /// What shines.
     pub shape: CaseShape,
 }
@@ -257,7 +259,18 @@ fn read_light(fields: &Fields) -> Result<CaseLight, CaseError> {
             return Err(fields.error("type", &message));
         }
     };
-    Ok(CaseLight { radiance, two_sided, shape })
+    Ok(CaseLight { radiance, two_sided, profile: read_profile(fields)?, shape })
+}
+
+/// Levels of a profile where a case says nothing of them.
+const LEVELS: u32 = 4;
+
+fn read_profile(fields: &Fields) -> Result<Option<Profile>, CaseError> {
+    let levels = fields.optional("profile_levels", Fields::length)?.map_or(LEVELS, |levels| levels as u32);
+    let pairs = fields.optional("profile", |f, field| f.list(field, Fields::pair_at))?;
+    let pairs: Option<Vec<[f64; 2]>> = pairs.map(|pairs| pairs.iter().map(|p| p.to_array()).collect());
+    let profile = pairs.map(|pairs| Profile::new(&pairs, levels)).transpose();
+    profile.map_err(|fault| fields.error("profile", &fault.to_string()))
 }
 
 fn read_polygon(fields: &Fields) -> Result<CaseShape, CaseError> {
@@ -322,6 +335,7 @@ impl Case {
             radiance: self.light.radiance,
             two_sided: self.light.two_sided,
             image: None,
+            profile: self.light.profile.clone(),
         };
         if let Some(texture) = texture {
             let image = match load(&texture.path) {
@@ -385,6 +399,7 @@ impl Case {
             radiance: self.light.radiance.as_vec3(),
             two_sided: self.light.two_sided,
             texture: image.as_ref().map(|_| LightTexture { layer: 0, uvs: vec![] }),
+            profile: self.light.profile.clone(),
             shape,
         };
         light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;

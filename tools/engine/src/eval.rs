@@ -10,8 +10,8 @@ use arealight_tool_kernels::plan;
 use arealight_vk::Resource;
 use glam::{DVec3, Vec3};
 
-/// What polygons and meshes may need beyond a convex quad without a texture.
-pub(crate) const POLYGONAL: Effects = Effects::POLYGON.union(Effects::TEXTURED).union(Effects::MESH);
+/// What polygons and meshes may need beyond a convex quad without a texture or a profile.
+pub(crate) const POLYGONAL: Effects = Effects::BEYOND_QUADS;
 
 /// A shading point with its one light.
 #[derive(Debug, Clone, PartialEq)]

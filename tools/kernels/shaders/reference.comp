@@ -39,6 +39,7 @@ layout(constant_id = 100) const uint SHADOWS = 0u;
 layout(constant_id = 101) const uint COUPLED = 0u;
 
 #include "arealight/ggx.glsl"
+#include "arealight/lights/profile.glsl"
 #include "arealight/thin_film.glsl"
 #include "arealight/shadows/ray_origin.glsl"
 #include "polygon_lights.glsl"
@@ -383,6 +384,12 @@ bool inside_outline(ArealightPolygonLight light, vec3 normal, vec3 point) {
     return inside;
 }
 
+// The factor of a light's profile at a point of it, `offset` from the surface.
+float profile_factor(uint index, vec3 normal, vec3 offset) {
+    bool has_profile = (lights[index].flags & LIGHT_PROFILE) != 0u;
+    return has_profile ? arealight_profile_factor(lights[index].profile, normal, offset) : 1.0;
+}
+
 // The radiance of a light's point, relative to its center.
 vec3 light_radiance(ArealightPolygonLight light, vec3 point) {
     return light.image.layer == AREALIGHT_NO_IMAGE ? light.radiance
@@ -400,8 +407,8 @@ float light_density(ArealightPolygonLight light, float area, vec3 normal, vec3 o
 }
 
 // One sample of one light: a point of it, weighed against the BRDF's density.
-vec3 estimate_by_light(Lobes lobes, ArealightPolygonLight light, ArealightGpuLightSampling sampling,
-                       inout RandomState random) {
+vec3 estimate_by_light(Lobes lobes, uint index, ArealightPolygonLight light,
+                       ArealightGpuLightSampling sampling, inout RandomState random) {
     LightPoint point = sample_point(sampling, random);
     vec3 offset = point.offset + (light.center - lobes.position);
     float by_light = light_density(light, sampling.area, point.normal, offset, lobes.position);
@@ -410,11 +417,13 @@ vec3 estimate_by_light(Lobes lobes, ArealightPolygonLight light, ArealightGpuLig
     if (by_light <= 0.0 || by_brdf <= 0.0 || !arrives(lobes, offset)) {
         return vec3(0.0);
     }
-    return light_radiance(light, point.offset) * evaluate(lobes, direction) / (by_light + by_brdf);
+    return light_radiance(light, point.offset) * profile_factor(index, point.normal, offset)
+        * evaluate(lobes, direction) / (by_light + by_brdf);
 }
 
 // The sample's BRDF direction, where it meets the light, weighed against the light's density.
-vec3 estimate_by_brdf(Lobes lobes, vec3 direction, float by_brdf, ArealightPolygonLight light,
+vec3 estimate_by_brdf(Lobes lobes, vec3 direction, float by_brdf, uint index,
+                      ArealightPolygonLight light,
                       ArealightGpuLightSampling sampling) {
     // Meet the light's plane, in front of the surface
     vec3 ray = direction * lobes.to_surface;
@@ -430,7 +439,8 @@ vec3 estimate_by_brdf(Lobes lobes, vec3 direction, float by_brdf, ArealightPolyg
                                                                                                 offset)) {
         return vec3(0.0);
     }
-    return light_radiance(light, offset - center) * evaluate(lobes, direction) / (by_light + by_brdf);
+    return light_radiance(light, offset - center) * profile_factor(index, sampling.normal, offset)
+        * evaluate(lobes, direction) / (by_light + by_brdf);
 }
 
 // The same for a mesh: every triangle that the direction meets. As in the shade kernel, none hides another.
@@ -490,11 +500,11 @@ vec3 estimate(Lobes lobes, inout RandomState random) {
         if (sampling.triangle_count == 0u) {
             continue;
         }
-        radiance += estimate_by_light(lobes, light, sampling, random);
+        radiance += estimate_by_light(lobes, index, light, sampling, random);
         if (by_brdf > 0.0 && sampling.normal == vec3(0.0)) {
             radiance += estimate_mesh_by_brdf(lobes, direction, by_brdf, light, sampling);
         } else if (by_brdf > 0.0) {
-            radiance += estimate_by_brdf(lobes, direction, by_brdf, light, sampling);
+            radiance += estimate_by_brdf(lobes, direction, by_brdf, index, light, sampling);
         }
     }
     for (uint index = 0u; index < constants.shape_count; index++) {

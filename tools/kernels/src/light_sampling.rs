@@ -69,6 +69,7 @@ impl LightSampling {
         let mut sampling = Self::default();
         for (index, record) in packed.order.iter().zip(&packed.lights) {
             let Some(light) = lights.get(*index as usize) else { continue };
+            let light = &*light.outlined();
             let first_triangle = sampling.triangles.len() as u32;
             let indices = triangles(light);
             let rows = vertex_rows(light);

@@ -6,7 +6,7 @@ use crate::extensions::AREA_LIGHTS;
 use crate::messages::Messages;
 use crate::node_lights;
 use crate::nodes::PlacedNode;
-use arealight::{Light, LightShape};
+use arealight::{Light, LightShape, Profile};
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -14,6 +14,9 @@ use serde_json::{Map, Value};
 /// Luminous efficacy of 555 nm light, lm/W: `EXT_lights_area` gives luminance in cd/m², and radiance is that
 /// divided by this. A light of 683 nits has a radiance of 1.
 pub const LUMENS_PER_WATT: f64 = 683.0;
+
+/// Levels of the profiles of a scene's lights.
+pub(crate) const LEVELS: u32 = 8;
 
 #[derive(Deserialize, Clone)]
 struct AreaLight {
@@ -87,7 +90,8 @@ pub(crate) fn lights(
             messages.warn(format!("light '{name}'"), text);
         }
         let made = shape.and_then(|shape| {
-            let light = Light { name: name.clone(), radiance, shape, ..Light::default() };
+            let profile = profile(light)?;
+            let light = Light { name: name.clone(), radiance, shape, profile, ..Light::default() };
             light.validate().map(|()| light).map_err(|fault| fault.to_string())
         });
         match made {
@@ -96,6 +100,22 @@ pub(crate) fn lights(
         }
     }
     Ok(lights)
+}
+
+/// What a file of ours says in `extras.arealight` of a light's angles: `spread`, as Blender has it, in
+/// radians, or `profile`, pairs of degrees and a factor.
+fn profile(light: &AreaLight) -> Result<Option<Profile>, String> {
+    let said = &light.extras["arealight"];
+    let made = match (&said["spread"], &said["profile"]) {
+        (Value::Number(spread), _) => Profile::spread(spread.as_f64().unwrap_or(f64::NAN), LEVELS),
+        (_, Value::Null) => return Ok(None),
+        (_, pairs) => {
+            let pairs: Vec<[f64; 2]> =
+                Deserialize::deserialize(pairs).map_err(|error| format!("profile: {error}"))?;
+            Profile::new(&pairs, LEVELS)
+        }
+    };
+    made.map(Some).map_err(|fault| fault.to_string())
 }
 
 /// A node's scale as the extension has it, with unit vectors to the light's right, up and front:

@@ -1,7 +1,7 @@
 //! `KHR_lights_punctual`: points, spots and suns, which have no area. Where a size is given they are small
 //! spheres and disks of the same intensity.
 
-use crate::area_lights::LUMENS_PER_WATT;
+use crate::area_lights::{LEVELS, LUMENS_PER_WATT};
 use crate::bounds::Bounds;
 use crate::document::Document;
 use crate::error::SceneError;
@@ -9,11 +9,11 @@ use crate::extensions::PUNCTUAL_LIGHTS;
 use crate::messages::Messages;
 use crate::node_lights;
 use crate::nodes::PlacedNode;
-use arealight::{Light, LightShape};
+use arealight::{Light, LightShape, Profile};
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
 use serde_json::Value;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_4, PI};
 
 #[derive(Deserialize, Clone)]
 struct PunctualLight {
@@ -26,7 +26,23 @@ struct PunctualLight {
     #[serde(default = "one")]
     intensity: f64,
     #[serde(default)]
+    spot: Spot,
+    #[serde(default)]
     extras: Value,
+}
+
+/// A spot's angles from its axis, in radians.
+#[derive(Deserialize, Clone)]
+#[serde(default, rename_all = "camelCase")]
+struct Spot {
+    inner_cone_angle: f64,
+    outer_cone_angle: f64,
+}
+
+impl Default for Spot {
+    fn default() -> Self {
+        Self { inner_cone_angle: 0.0, outer_cone_angle: FRAC_PI_4 }
+    }
 }
 
 fn white() -> [f32; 3] {
@@ -95,11 +111,7 @@ fn make(
             (LightShape::Sphere { center, radius }, of_intensity)
         }
         "spot" => {
-            let text = format!(
-                "spots are disks with a radius of {radius} m, whose light falls off with the cosine and ends \
-                at no cone"
-            );
-            messages.warn(PUNCTUAL_LIGHTS, text);
+            messages.note(PUNCTUAL_LIGHTS, format!("spots are disks with a radius of {radius} m"));
             (disk(center, front(node)?, radius), of_intensity)
         }
         "directional" => {
@@ -118,7 +130,12 @@ fn make(
         other => return Err(format!("type '{other}' is not known")),
     };
     let radiance = Vec3::from_array(light.color) * (light.intensity / LUMENS_PER_WATT * brightness) as f32;
-    let light = Light { name: name.to_owned(), radiance, shape, ..Light::default() };
+    let profile = match light.kind.as_str() {
+        "spot" => Some(Profile::cone(light.spot.inner_cone_angle, light.spot.outer_cone_angle, LEVELS)),
+        _ => None,
+    };
+    let profile = profile.transpose().map_err(|fault| fault.to_string())?;
+    let light = Light { name: name.to_owned(), radiance, shape, profile, ..Light::default() };
     light.validate().map(|()| light).map_err(|fault| fault.to_string())
 }
 

@@ -80,6 +80,12 @@ vec4 arealight_bridge_face(uint index) {
 }
 #endif
 
+#ifndef WITHOUT_arealight_bridge_profile
+vec4 arealight_bridge_profile(uint row) {
+    return numbers[row];
+}
+#endif
+
 #ifndef WITHOUT_arealight_bridge_light_texture
 vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level) {
     return textureLod(LIGHT_TEXTURES, vec3(coordinate, float(layer)), level).rgb;
@@ -152,6 +158,22 @@ vec3 shade(int first) {
 #endif
 #if AREALIGHT_MESHES
     sum += arealight_radiance(point, ArealightMeshLight(radiance, center, counts.x, counts.y, two_sided));
+#endif
+#if AREALIGHT_SHAPED
+    ArealightShapedLight shaped;
+    shaped.polygon.radiance = radiance;
+    shaped.polygon.center = center;
+    shaped.polygon.normal = axis_u;
+    shaped.polygon.first_vertex = counts.x;
+    shaped.polygon.vertex_count = counts.y;
+    shaped.polygon.two_sided = two_sided;
+#if AREALIGHT_LIGHT_TEXTURES
+    shaped.polygon.image.layer = counts.w;
+    shaped.polygon.is_quad = two_sided;
+#endif
+    shaped.radiance = radiance;
+    shaped.profile = counts.w;
+    sum += arealight_radiance(point, shaped);
 #endif
 #if AREALIGHT_DISKS
     ArealightDiskLight disk;

@@ -196,7 +196,7 @@ const OF_HOSTS: &str = "PI TAU EPSILON INFINITY N V L H R T B F0 F90 NdotL near 
 /// pipeline.
 fn has_bridges(option: &str) -> bool {
     let name = option.trim_start_matches("AREALIGHT_");
-    ["LIGHT_TEXTURES", "QUADS", "POLYGONS", "MESHES", "DISKS", "SPHERES", "TUBES"].contains(&name)
+    ["LIGHT_TEXTURES", "QUADS", "POLYGONS", "MESHES", "SHAPED", "DISKS", "SPHERES", "TUBES"].contains(&name)
 }
 
 /// Every kind of light and all bridges, the other options open until the pipeline is made.

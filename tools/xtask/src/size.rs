@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The most lines of code: Rust, GLSL, Python, C++ and shell, without the generated header.
-const MOST_LINES: usize = 118_000;
+const MOST_LINES: usize = 119_600;
 /// The most words of README.md and docs/, without the tables of docs/data/.
 const MOST_WORDS: usize = 40_000;
 /// The most characters of a line of Rust, GLSL and Markdown.

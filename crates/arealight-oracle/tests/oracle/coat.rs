@@ -62,6 +62,7 @@ fn a_coat_of_no_weight_is_none_to_the_bit() {
         radiance: DVec3::new(1.0, 2.0, 3.0),
         two_sided: true,
         image: None,
+        profile: None,
     };
     for (coat, view) in hard_coats() {
         let surface = coated(Coat { weight: 0.0, ..coat });

@@ -94,6 +94,7 @@ pub fn from_everywhere(answer: impl FnMut(&RelativeLight) -> DVec3) -> DVec3 {
         radiance: DVec3::ONE,
         two_sided: false,
         image: None,
+        profile: None,
     };
     let lights: Vec<RelativeLight> = faces.map(light).collect();
     lights.iter().map(answer).sum()

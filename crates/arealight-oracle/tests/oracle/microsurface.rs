@@ -69,6 +69,7 @@ fn errors(f0: f64, random: &mut Stream) -> [f64; 2] {
                 radiance: DVec3::ONE,
                 two_sided: true,
                 image: None,
+                profile: None,
             };
             let shade =
                 |surface: &Surface| ltc_on(Quality::default(), &TABLE, surface, DVec3::Z, view, &light).x;

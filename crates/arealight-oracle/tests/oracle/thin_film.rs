@@ -64,7 +64,8 @@ fn cases(is_metal: bool, count: usize, degrees: [f64; 2]) -> Vec<Case> {
             let size = draw(degrees[0], degrees[1]).to_radians().tan();
             let corner = |x: f64, y: f64| center + (right * x + up * y) * size;
             let vertices = vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
-            let light = RelativeLight { vertices, radiance: DVec3::ONE, two_sided: true, image: None };
+            let light =
+                RelativeLight { vertices, radiance: DVec3::ONE, two_sided: true, image: None, profile: None };
             Case { surface, view, light }
         })
         .collect()

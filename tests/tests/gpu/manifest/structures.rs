@@ -47,7 +47,7 @@ fn light_layout() -> Vec<(String, u32)> {
         vertex_count,
         flags,
         texture_layer,
-        reserved
+        profile
     )
 }
 

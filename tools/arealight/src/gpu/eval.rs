@@ -55,6 +55,7 @@ fn point(case: &SupportedCase, images: &mut Images) -> EvalPoint {
         radiance: case.light.radiance.as_vec3(),
         two_sided: case.light.two_sided,
         texture: None,
+        profile: case.light.profile.clone(),
     };
     if let Some((image, texture)) = shown {
         images.show(&mut light, &image.texture, texture.uv.clone());

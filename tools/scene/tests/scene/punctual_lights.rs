@@ -62,7 +62,10 @@ fn a_spot_is_a_disk_that_shines_where_it_points() {
     let area = light.shape.area_vector();
     assert!((area.normalize_or_zero() - DVec3::Y).length() < 1e-6, "{area}");
     assert!((f64::from(light.radiance.x) * area.length() - 1.0).abs() < 1e-6);
-    assert!(warnings(&scene)[0].contains("whose light falls off with the cosine and ends at no cone"));
+    // Its cone ends at 45 degrees, where the file says nothing
+    let profile = light.profile.as_ref().unwrap();
+    assert!(profile.factor(1.0) == 1.0 && profile.factor(0.7) == 0.0 && profile.factor(0.72) > 0.0);
+    assert_eq!(notes(&scene), ["KHR_lights_punctual: spots are disks with a radius of 0.05 m"]);
 }
 
 #[test]

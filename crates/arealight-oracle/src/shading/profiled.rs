@@ -1,0 +1,124 @@
+//! A light with a profile: its rings between levels, each with the profile's mean over it.
+
+use crate::polygon::{transformed_form_factor, vector_form_factor};
+use arealight::Profile;
+use arealight::profile::ProfilePlace;
+use glam::{DMat3, DVec3};
+use std::f64::consts::TAU;
+
+/// Corners of the polygon that stands for a level's disk, of its area: what they differ in is 1e-4 of what it
+/// sends.
+const CORNERS: u32 = 256;
+
+/// What a transformed cosine gets through a profile, signed. `vertices` are the light's, convex, `visible` what
+/// counts of it, both from the shading point. The float64 twin of `lights/shaped.glsl`, but for its disks,
+/// which are finer here.
+pub(super) fn profiled(profile: &Profile, vertices: &[DVec3], visible: &[DVec3], inverse: &DMat3) -> f64 {
+    let Some(normal) = normal_of(vertices) else { return 0.0 };
+    let foot = normal * normal.dot(vertices[0]);
+    let height = foot.length_squared();
+    let (nearest, farthest) = range(vertices, normal, foot);
+    let places = profile.places();
+    let place_at = |side: f64| profile.place(&places, (height / (side + height).max(1e-300)).sqrt());
+    let (low, high) = (place_at(nearest), place_at(farthest));
+    if low.x >= 1.0 {
+        return 0.0;
+    }
+    let (back, determinant) = (inverse.inverse(), inverse.determinant().abs());
+    // A ring's mean of the profile: of a narrow lobe the factor in the mean direction of what it sees
+    let mean = |from: ProfilePlace, to: ProfilePlace, vector: DVec3| {
+        let width = to.x - from.x;
+        let mean = if width > 1e-3 { (to.sum - from.sum) / width } else { 0.5 * (from.factor + to.factor) };
+        let direction = back * vector;
+        if direction == DVec3::ZERO || !direction.is_finite() {
+            return mean;
+        }
+        let angle = |place: ProfilePlace| (place.x / profile.scale()).min(1.0).sqrt().asin();
+        let ring = (angle(to) - angle(from)).sin();
+        let lobe = 4.0 * (vector.length() / direction.length()).powi(3) / determinant;
+        let narrow = ring.powi(4) / (ring.powi(4) + lobe * lobe);
+        let cosine = normal.dot(direction).abs() / direction.length();
+        let there = profile.place(&places, cosine);
+        let there = match there.x {
+            x if x <= from.x => from.factor,
+            x if x >= to.x => to.factor,
+            _ => there.factor,
+        };
+        mean + (there - mean) * narrow
+    };
+    let factor = |part: &[DVec3]| transformed_form_factor(inverse, part);
+    let vector = |part: &[DVec3]| {
+        let transformed: Vec<DVec3> = part.iter().map(|vertex| *inverse * *vertex).collect();
+        vector_form_factor(&transformed)
+    };
+    let (mut sum, mut from) = (0.0, low);
+    let mut within = (0.0, DVec3::ZERO);
+    for cosine in profile.levels() {
+        let square = height * (1.0 - cosine * cosine) / (cosine * cosine);
+        if square <= nearest || square >= farthest {
+            continue;
+        }
+        let to = profile.place(&places, *cosine);
+        let part = in_disk(visible, normal, foot, square);
+        let part = (factor(&part), vector(&part));
+        sum += mean(from, to, part.1 - within.1) * (part.0 - within.0);
+        (within, from) = (part, to);
+    }
+    sum + mean(from, high, vector(visible) - within.1) * (factor(visible) - within.0)
+}
+
+/// The factor of the profile in a direction, on the side that the light is seen from.
+pub(super) fn factor_in(profile: &Profile, vertices: &[DVec3], direction: DVec3) -> f64 {
+    normal_of(vertices).map_or(0.0, |normal| {
+        let cosine = normal.dot(direction) / direction.length();
+        profile.factor(cosine.abs())
+    })
+}
+
+fn normal_of(vertices: &[DVec3]) -> Option<DVec3> {
+    let anchor = *vertices.first()?;
+    let pairs = vertices[1..].windows(2);
+    pairs.map(|pair| (pair[0] - anchor).cross(pair[1] - anchor)).sum::<DVec3>().try_normalize()
+}
+
+/// The squared distances of the nearest and the farthest point of a convex outline from a foot in its plane.
+fn range(vertices: &[DVec3], normal: DVec3, foot: DVec3) -> (f64, f64) {
+    let (mut nearest, mut farthest, mut is_within) = (f64::INFINITY, 0.0_f64, true);
+    for (a, b) in vertices.iter().zip(vertices.iter().cycle().skip(1)) {
+        let (a, b) = (*a - foot, *b - foot);
+        let along = b - a;
+        let part = (-a.dot(along) / along.length_squared().max(1e-300)).clamp(0.0, 1.0);
+        nearest = nearest.min((a + along * part).length_squared());
+        farthest = farthest.max(b.length_squared());
+        is_within &= normal.dot(a.cross(b)) >= 0.0;
+    }
+    (if is_within { 0.0 } else { nearest }, farthest)
+}
+
+/// What of a convex outline is within a disk of its plane about a point, of this squared radius.
+fn in_disk(outline: &[DVec3], normal: DVec3, center: DVec3, square: f64) -> Vec<DVec3> {
+    let (u, v) = normal.any_orthonormal_pair();
+    let step = TAU / f64::from(CORNERS);
+    // Of a regular polygon of the disk's area: the distance of its sides
+    let side = (square * step / step.sin()).sqrt() * (0.5 * step).cos();
+    let mut left = outline.to_vec();
+    for corner in 0..CORNERS {
+        let (sin, cos) = (f64::from(corner) * step).sin_cos();
+        let out = u * cos + v * sin;
+        let height = |point: DVec3| side - out.dot(point - center);
+        if left.iter().all(|point| height(*point) >= 0.0) {
+            continue;
+        }
+        let whole = std::mem::take(&mut left);
+        for (a, b) in whole.iter().zip(whole.iter().cycle().skip(1)) {
+            let (over, next) = (height(*a), height(*b));
+            if over >= 0.0 {
+                left.push(*a);
+            }
+            if (over >= 0.0) != (next >= 0.0) {
+                left.push(a.lerp(*b, over / (over - next)));
+            }
+        }
+    }
+    left
+}

@@ -1,0 +1,222 @@
+#ifndef AREALIGHT_SHAPED_LIGHT_GLSL
+#define AREALIGHT_SHAPED_LIGHT_GLSL
+
+#include "arealight/form_factor/disk_part.glsl"
+#include "arealight/form_factor/sphere.glsl"
+#include "arealight/lights/polygon.glsl"
+#include "arealight/lights/profile.glsl"
+
+// Flat, convex lights with a profile: a factor of the radiance by the angle from the front's normal
+// (arealight::Profile in Rust; docs/shaped-light.md).
+//
+// The angle at the light is that of the foot of the perpendicular, seen from the shading point: points of the
+// light within an angle are a disk about the foot. So the light is cut into rings by a few levels, and of
+// each ring the form factor counts times the profile's mean over it, or over what the light has of it.
+//
+struct ArealightShapedLight {
+    ArealightPolygonLight polygon; // convex
+    vec3 radiance;                 // the polygon's: of the front at a factor of 1, W/(m^2 sr)
+    uint profile;                  // the first row, for arealight_bridge_profile
+};
+
+struct ArealightLocalShaped {
+    ArealightLocalPolygon polygon;
+    vec3 normal;     // of the front, in the shading frame
+    vec3 foot;       // of the perpendicular, from the shading point
+    float height;    // squared: of the point over the light's plane
+    float nearest;   // squared: from the foot to the light, 0 within it
+    float farthest;
+    vec3 low;        // x, factor and sum of its nearest point
+    vec3 high;       // and of its farthest
+    uint profile;    // the first row
+    float scale;
+    uint levels;     // rows of levels
+    uint levels_end;
+};
+
+// A vertex of the light from the foot, in the shading frame.
+vec3 arealight_from_foot(ArealightLocalShaped local, uint index) {
+    return local.polygon.center - local.foot + local.polygon.to_frame * arealight_bridge_vertex(index);
+}
+
+bool arealight_to_local(ArealightPoint point, ArealightShapedLight light, out ArealightLocalShaped local) {
+    bool lit = arealight_to_local(point, light.polygon, local.polygon);
+    local.normal = point.to_frame * light.polygon.normal;
+    float height = dot(local.normal, local.polygon.center);
+    local.foot = height * local.normal;
+    local.height = height * height;
+    local.nearest = 3e38;
+    local.farthest = 0.0;
+    bool within = true;
+    vec3 a = arealight_from_foot(local, local.polygon.end - 1u);
+    for (uint index = local.polygon.first; index < local.polygon.end; index++) {
+        vec3 b = arealight_from_foot(local, index);
+        vec3 along = b - a;
+        float part = clamp(-dot(a, along) / max(dot(along, along), AREALIGHT_LEAST_SQUARE), 0.0, 1.0);
+        vec3 nearest = a + part * along;
+        local.nearest = min(local.nearest, dot(nearest, nearest));
+        local.farthest = max(local.farthest, dot(b, b));
+        within = within && dot(local.normal, cross(a, b)) >= 0.0;
+        a = b;
+    }
+    local.nearest = within ? 0.0 : local.nearest;
+    vec4 head = arealight_bridge_profile(light.profile);
+    local.profile = light.profile;
+    local.scale = head.x;
+    local.levels = light.profile + 1u;
+    local.levels_end = local.levels + uint(head.y);
+    local.low = arealight_profile_place(light.profile, local.nearest, local.height);
+    local.high = arealight_profile_place(light.profile, local.farthest, local.height);
+    // Outside of the cone nothing arrives
+    return lit && local.low.x < 1.0;
+}
+
+// An outline whose vertices come in order, and which is clipped as the options have it.
+struct ArealightPartOutline {
+    ArealightClippedOutline clipped;
+    vec3 first;
+};
+
+// Goes on to its next vertex, in the shading frame.
+void arealight_part_vertex(inout ArealightPartOutline part, mat3 space, vec3 vertex, bool is_first) {
+    if (!AREALIGHT_CLIPS_AT_SURFACE) {
+        arealight_clipped_add(part.clipped, space, vertex);
+    } else if (is_first) {
+        part.first = vertex;
+        part.clipped = arealight_clipped_begin(vertex);
+    } else {
+        arealight_clipped_vertex(part.clipped, space, vertex);
+    }
+}
+
+// The vector form factor, in a space, of what is of the light within a disk about the foot that holds some of
+// it, but not all. Error: that of an outline of as many corners, and of the rim's chords, whose area is the
+// disk's: up to 1e-3 of the disk's.
+vec3 arealight_level_vector(mat3 space, ArealightLocalShaped local, float square, float front) {
+    uint count = local.polygon.end - local.polygon.first;
+    // Begin where the outline comes into the disk; without such an edge all of the disk is in the light
+    uint start = count;
+    vec2 part;
+    vec3 a = arealight_from_foot(local, local.polygon.end - 1u);
+    for (uint index = 0u; index < count && start == count; index++) {
+        vec3 b = arealight_from_foot(local, local.polygon.first + index);
+        start = dot(a, a) >= square && arealight_edge_in_disk(a, b, square, part) ? index : start;
+        a = b;
+    }
+    bool is_whole = start == count;
+    if (is_whole && local.nearest > 0.0) {
+        return vec3(0.0);
+    }
+    ArealightPartOutline outline =
+        ArealightPartOutline(arealight_clipped_begin(vec3(0.0)), vec3(0.0));
+    bool is_first = true;
+    vec3 left = vec3(0.0); // where the outline left the disk
+    float outside = 0.0;   // how far it has been since then
+    uint last = start == 0u ? count : start;
+    a = arealight_from_foot(local, local.polygon.first + last - 1u);
+    for (uint step = is_whole ? count : 0u; step <= count; step++) {
+        uint index = is_whole ? 0u : (start + step) % count;
+        vec3 b = arealight_from_foot(local, local.polygon.first + index);
+        bool is_met = arealight_edge_in_disk(a, b, square, part);
+        bool comes = is_whole || dot(a, a) >= square;
+        vec3 from = a + part.x * (b - a);
+        vec3 to = a + part.y * (b - a);
+        if (is_met || is_whole) {
+            ArealightDiskArc arc = ArealightDiskArc(vec2(1.0, 0.0), 1.0, 1);
+            vec3 corner = left;
+            if (is_whole) {
+                arc = arealight_whole_disk();
+                vec3 other;
+                arealight_perpendiculars(local.normal, corner, other);
+                corner *= sqrt(square);
+            } else if (comes && step > 0u) {
+                arc = arealight_disk_arc(left, from, local.normal, square, outside / square);
+            }
+            int arcs = arc.chords - 1;
+            int vertices = arcs + (step == count ? 0 : comes ? 2 : 1);
+            for (int vertex = 0; vertex < vertices; vertex++) {
+                corner = arealight_disk_arc_turned(arc, local.normal, corner);
+                vec3 place = vertex < arcs ? arc.scale * corner : comes && vertex == arcs ? from : to;
+                arealight_part_vertex(outline, space, local.foot + place, is_first);
+                is_first = false;
+            }
+            left = to;
+            outside = 0.0;
+        }
+        outside = max(outside, dot(b, b) - square);
+        a = b;
+    }
+    if (AREALIGHT_CLIPS_AT_SURFACE) {
+        arealight_clipped_vertex(outline.clipped, space, outline.first);
+    }
+    return arealight_clipped_vector(outline.clipped, front);
+}
+
+// A lobe's space, as a profile's mean over a ring needs it.
+struct ArealightRingLobe {
+    mat3 from_space;
+    float determinant;
+};
+
+// A profile's mean over a ring between two places, `vector` being the ring's vector form factor in the lobe's
+// space: that of all of the ring, where the lobe is as wide as it; of a narrow lobe the factor in the mean
+// direction of what it sees of it.
+float arealight_profile_mean(ArealightLocalShaped local, ArealightRingLobe lobe, vec3 from, vec3 to,
+                             vec3 vector) {
+    float width = to.x - from.x;
+    float mean = width > 1e-3 ? (to.z - from.z) / width : 0.5 * (from.y + to.y);
+    vec3 direction = lobe.from_space * vector;
+    float square = dot(direction, direction);
+    float scale = 1.0 / local.scale;
+    vec2 sines = vec2(from.x, to.x) * scale;
+    vec2 cosines = sqrt(max(1.0 - sines, 0.0));
+    sines = sqrt(sines);
+    float angle = sines.y * cosines.x - cosines.y * sines.x;
+    // The squared angle that the lobe is wide there: the root of how its space shrinks solid angles
+    float ratio = dot(vector, vector) / max(square, AREALIGHT_LEAST_SQUARE);
+    float lobe_square = 4.0 * ratio * sqrt(ratio) / lobe.determinant;
+    float narrow = angle * angle;
+    narrow *= narrow;
+    narrow = narrow / max(narrow + lobe_square * lobe_square, AREALIGHT_LEAST_SQUARE);
+    float height = dot(direction, local.normal);
+    vec3 side = direction - height * local.normal;
+    vec3 place = arealight_profile_place(local.profile, dot(side, side), height * height);
+    float there = place.x <= from.x ? from.y : place.x >= to.x ? to.y : place.y;
+    return square > 0.0 ? mix(mean, there, narrow) : mean;
+}
+
+// Error beyond the form factors': of the profile within a ring, where it is its mean.
+vec3 arealight_vector_form_factor(mat3 space, ArealightLocalShaped local) {
+    float front = AREALIGHT_HAS_TWO_SIDED ? local.polygon.side : 1.0;
+    vec3 all = arealight_outline_form_factor(space, local.polygon.center, local.polygon.to_frame,
+                                             local.polygon.first, local.polygon.end, front);
+    ArealightRingLobe lobe = ArealightRingLobe(inverse(space), abs(determinant(space)));
+    vec3 sum = vec3(0.0);
+    vec3 within = vec3(0.0);
+    vec3 from = local.low;
+    for (uint row = local.levels; row < local.levels_end; row++) {
+        vec4 level = arealight_bridge_profile(row);
+        float square = level.w * local.height;
+        if (square <= local.nearest) {
+            continue;
+        }
+        if (square >= local.farthest) {
+            break;
+        }
+        vec3 vector = arealight_level_vector(space, local, square, front);
+        sum += arealight_profile_mean(local, lobe, from, level.xyz, vector - within) * (vector - within);
+        within = vector;
+        from = level.xyz;
+    }
+    sum += arealight_profile_mean(local, lobe, from, local.high, all - within) * (all - within);
+    return front * sum;
+}
+
+vec3 arealight_image_average(mat3 space, ArealightLocalShaped local, vec3 vector) {
+    return arealight_image_average(space, local.polygon, vector);
+}
+
+AREALIGHT_WITHOUT_HALF_VECTORS(ArealightLocalShaped)
+AREALIGHT_LIGHT_KIND(ArealightShapedLight, ArealightLocalShaped, AREALIGHT_LOOPED_LOBES)
+
+#endif
