@@ -40,7 +40,7 @@ const float LEAST_WIDTH = 2.0;
 const float MEAN_END = 2.5;
 
 // What a workgroup knows of its pixels and those around them: the position, and in w (the part that is
-// hidden, the penumbra's width times that) as halves.
+// hidden, the penumbra's width over the distance to the camera times that) as halves.
 shared vec4 patch_texels[PATCH * PATCH];
 // The normal; 0 where there is no light.
 shared uint patch_normals[PATCH * PATCH];
@@ -117,8 +117,9 @@ float weight_of(Center center, int i, vec3 offset, float exponent) {
     return likeness(offset, unpack_normal(patch_normals[i]), center.normal, center.plane_scale, exponent);
 }
 
-// The width of the penumbra that a pixel is in, in x; less than 0 where no neighbour has a ray that is
-// hidden. In y how far pixels are apart. By every second neighbour, those that touch the pixel among them.
+// In x the width of the penumbra that a pixel is in, over the distance to the camera; less than 0 where no
+// neighbour has a ray that is hidden. In y how far pixels are apart. By every second neighbour, those that
+// touch the pixel among them.
 vec2 search(Center center) {
     vec2 sum = vec2(0.0);
     float spacing = 3e38;
@@ -173,7 +174,8 @@ vec3 filtered(float rays, vec3 specular) {
     if (found.x < 0.0) {
         return vec3(1.0);
     }
-    float deviation = max(PENUMBRA_PART * found.x, LEAST_WIDTH * found.y) * pow(rays, -1.0 / 3.0);
+    float penumbra = found.x * camera_distance(position);
+    float deviation = max(PENUMBRA_PART * penumbra, LEAST_WIDTH * found.y) * pow(rays, -1.0 / 3.0);
     int reach = int(ceil(min(MEAN_END * deviation / max(found.y, 1e-37), float(REACH))));
     return arriving_by_means(gathered(center, deviation, reach), specular);
 }

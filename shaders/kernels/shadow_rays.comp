@@ -184,7 +184,10 @@ vec4 pixel_shadow(ivec2 pixel, ivec2 size) {
         sum += found;
         hidden |= found.x > 0.0 ? 0u : 1u << uint(ray);
     }
-    return vec4(sum / float(SHADOW_RAYS), float(1u + hidden), float(SHADOW_RAYS));
+    sum /= float(SHADOW_RAYS);
+    // No half is larger; a width of so many distances to the camera is the whole picture's anyway
+    float width = min(sum.y / camera_distance(position), 6e4);
+    return vec4(sum.x, width, float(1u + hidden), float(SHADOW_RAYS));
 }
 
 void main() {

@@ -38,9 +38,9 @@ float camera_distance(vec3 position) {
     return IS_ORTHOGRAPHIC ? length(constants.camera) : distance(constants.camera, position);
 }
 
-// Of a pixel with light: what arrives of its luminance in r, from 0 to 1; the penumbra's width in g, in the
-// unit of positions, times the part that is hidden; 1 in b, and more by a bit for each ray that is hidden;
-// and in a how many rays it has. Else zero.
+// Of a pixel with light: what arrives of its luminance in r, from 0 to 1; the penumbra's width in g, over the
+// distance to the camera, times the part that is hidden; 1 in b, and more by a bit for each ray that is
+// hidden; and in a how many rays it has. Else zero.
 layout(set = 0, binding = SHADOW_BINDING, rgba16f) uniform image2D shadow_image;
 
 #endif

@@ -7,6 +7,10 @@ use std::fmt::Write as _;
 /// before moves by other choices of the compiler's, where nothing was added.
 pub const THROUGHPUT_TOLERANCE: f64 = 0.03;
 
+/// The one family some of whose rows spill, as many registers as the file says. Elsewhere a spill fails,
+/// whatever the file says.
+pub const SPILLING_FAMILY: &str = "gfx1100";
+
 /// What differs from the file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Finding {
@@ -88,7 +92,7 @@ impl Check {
                 None => vec![Finding::Missing],
                 Some(older) => {
                     self.compared += 1;
-                    compare(row, older)
+                    compare(row, older, family.family == SPILLING_FAMILY)
                 }
             };
             self.add(family, findings.into_iter().map(|finding| (row.name(), finding)));
@@ -121,12 +125,13 @@ impl Check {
 }
 
 /// One row against the file's.
-fn compare(row: &Measured, file: &Measured) -> Vec<Finding> {
+fn compare(row: &Measured, file: &Measured, may_spill: bool) -> Vec<Finding> {
+    let spills = |file| if may_spill { file } else { 0 };
     let most = (file.inverse_throughput as f64 * (1.0 + THROUGHPUT_TOLERANCE)).floor() as u64;
     let numbers = [
         ("VGPRs", row.vgprs, file.vgprs, file.vgprs),
-        ("spilled VGPRs", row.spilled_vgprs, file.spilled_vgprs, file.spilled_vgprs),
-        ("spilled SGPRs", row.spilled_sgprs, file.spilled_sgprs, file.spilled_sgprs),
+        ("spilled VGPRs", row.spilled_vgprs, file.spilled_vgprs, spills(file.spilled_vgprs)),
+        ("spilled SGPRs", row.spilled_sgprs, file.spilled_sgprs, spills(file.spilled_sgprs)),
         ("inverse throughput", row.inverse_throughput, file.inverse_throughput, most),
     ];
     let finding = |(what, found, file, most): (&'static str, u64, u64, u64)| match found {
@@ -228,13 +233,26 @@ mod tests {
     }
 
     #[test]
-    fn more_spills_than_the_file_says_fail() {
+    fn spills_fail_but_where_the_file_has_them_of_the_one_family() {
         for (spilled_vgprs, spilled_sgprs, what) in [(4, 0, "spilled VGPRs 4"), (0, 4, "spilled SGPRs 4")] {
             let spilling = || vec![Measured { spilled_vgprs, spilled_sgprs, ..row("exact", 64, 1000) }];
-            let check = |file| check(spilling(), file);
-            let less = check(vec![row("exact", 64, 1000)]);
-            assert!(!less.passes() && less.to_text("X").contains(&format!("FAILED: {what}")));
-            assert!(check(spilling()).passes(), "the twin");
+            let check = |family: &str, file| {
+                let of = |rows| {
+                    let mut compiled = compiled(rows);
+                    compiled.families[0].family = family.into();
+                    compiled
+                };
+                Check::new(&of(spilling()), &of(file), true).unwrap()
+            };
+            for (family, file) in [
+                ("navi21", vec![row("exact", 64, 1000)]),
+                ("navi21", spilling()),
+                (SPILLING_FAMILY, vec![row("exact", 64, 1000)]),
+            ] {
+                let failed = check(family, file);
+                assert!(!failed.passes() && failed.to_text("X").contains(&format!("FAILED: {what}")));
+            }
+            assert!(check(SPILLING_FAMILY, spilling()).passes(), "the twin");
         }
     }
 

@@ -13,7 +13,7 @@ const SIZE: [u32; 2] = [96, 72];
 #[derive(Clone, Copy)]
 enum Method {
     Unshadowed,
-    Rays,
+    Rays(ShadowFilter),
     Reference,
 }
 
@@ -45,8 +45,8 @@ fn picture(engine: &TestEngine, scale: f64, from_camera: bool, method: Method) -
     } else {
         let surfaces = Effects::DIFFUSE;
         let options = ShadeOptions { surfaces, shadow_rays: 4, ..ShadeOptions::default() };
-        let with = (ShadowFilter::Off, ShadowHistory::Off);
-        let view = renderer.shadowed(&buffers, options, with).unwrap();
+        let filter = if let Method::Rays(filter) = method { filter } else { ShadowFilter::Off };
+        let view = renderer.shadowed(&buffers, options, (filter, ShadowHistory::Off)).unwrap();
         renderer.shade_shadowed(&view, 1).unwrap();
         if let Method::Unshadowed = method {
             return view.unshadowed().unwrap().into_iter().map(|pixel| pixel.x.into()).collect();
@@ -65,7 +65,8 @@ fn apart(picture: &[f64], other: &[f64]) -> f64 {
 fn a_scene_of_any_size_has_the_same_shadows() {
     let Some(engine) = TestEngine::new() else { return };
     for from_camera in [true, false] {
-        for method in [Method::Rays, Method::Reference] {
+        for method in [Method::Rays(ShadowFilter::Off), Method::Rays(ShadowFilter::Gather), Method::Reference]
+        {
             let metres = picture(&engine, 1.0, from_camera, method);
             for scale in [1e-6, 1e-3, 1e4] {
                 // Rounding makes 7e-7; a ray that grazes an edge and passes on its other side .003, as one of

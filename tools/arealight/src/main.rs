@@ -7,6 +7,7 @@ mod failure;
 mod film;
 mod gpu;
 mod lights;
+mod means;
 mod memory;
 mod output;
 mod picture;

@@ -4,7 +4,7 @@
 use crate::failure::Failure;
 use crate::output;
 use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage as _};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -172,6 +172,41 @@ pub fn srgb_from_linear(linear: f32) -> u8 {
     (encoded * 255.0 + 0.5) as u8
 }
 
+/// Pixels to a side of the blocks whose means are compared on a screen: an eye sees their differences, where
+/// it does not see noise.
+pub const BLOCK: usize = 4;
+
+/// The root of the mean squared difference of what a screen shows of radiances at an exposure, in levels of
+/// 255: of the means of blocks of `block` x `block` in rows of `width`; and of that the part that is not
+/// alike in all channels.
+pub fn levels(
+    pairs: impl Iterator<Item = (DVec3, DVec3)>,
+    width: usize,
+    block: usize,
+    stops: f32,
+) -> [f64; 2] {
+    let shown = |radiance: DVec3| {
+        let mapped = tone_map(radiance.as_vec3() * stops.exp2()).to_array();
+        DVec3::from_array(mapped.map(|channel| f64::from(srgb_from_linear(channel))))
+    };
+    let mut blocks = vec![];
+    for (index, (a, b)) in pairs.enumerate() {
+        let (x, y) = (index % width, index / width);
+        let place = y / block * width.div_ceil(block) + x / block;
+        if place >= blocks.len() {
+            blocks.resize(place + 1, (DVec3::ZERO, 0.0));
+        }
+        blocks[place].0 += shown(a) - shown(b);
+        blocks[place].1 += 1.0;
+    }
+    let squares = blocks.iter().fold([0.0; 2], |[all, color], (sum, count)| {
+        let apart = *sum / *count;
+        let grey = DVec3::splat(apart.element_sum() / 3.0);
+        [all + apart.length_squared(), color + (apart - grey).length_squared()]
+    });
+    squares.map(|square| (square / (3 * blocks.len()) as f64).sqrt())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -208,6 +243,25 @@ mod tests {
             [channel("R"), channel("G"), channel("B")],
             [[2.5, 4.5], [2500.0, 4500.0], [-0.625, -1.125]]
         );
+    }
+
+    #[test]
+    fn levels_are_of_blocks_and_colours_apart() {
+        let grey = DVec3::splat(0.1);
+        let from_grey = |odd: DVec3, even: DVec3, stops| {
+            let texels = (0..64).map(|i| if (i + i / 8) % 2 == 0 { even } else { odd });
+            levels(texels.map(|texel| (texel, grey)), 8, BLOCK, stops)
+        };
+        // Noise that the blocks' means have not; twice as much in each channel; in one alone
+        let [noise, color] = from_grey(grey * 1.05, grey * 0.95, 0.0);
+        assert!(noise < 1.0 && color < 0.1, "{noise}, {color}");
+        let [all, color] = from_grey(grey * 2.0, grey * 2.0, 0.0);
+        assert!(all > 30.0 && color < 1e-9, "{all}, {color}");
+        let red = DVec3::new(0.2, 0.1, 0.1);
+        let [all, color] = from_grey(red, red, 0.0);
+        assert!((color / all - (2.0_f64 / 3.0).sqrt()).abs() < 0.02, "{all}, {color}");
+        // A stop more shows more
+        assert!(from_grey(red, red, 1.0)[0] > all);
     }
 
     #[test]

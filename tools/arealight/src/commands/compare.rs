@@ -5,7 +5,7 @@ use crate::differences::diverging;
 use crate::failure::Failure;
 use crate::memory;
 use crate::output::{self, print};
-use crate::picture::{srgb_from_linear, tone_map};
+use crate::picture::{BLOCK, levels};
 use arealight_cases::images::Images;
 use arealight_oracle::texture::Texture;
 use glam::DVec3;
@@ -59,36 +59,11 @@ struct Difference {
     levels: [f64; 2],
 }
 
-/// Pixels to a side of the blocks whose means are compared on a screen.
-const BLOCK: usize = 4;
-
-/// The root of the mean squared difference of what a screen shows at an exposure, in levels of 255: of the
-/// means of blocks; and of that the part that is not alike in all channels.
-fn levels(judged: &Texture, truth: &Texture, stops: f32) -> [f64; 2] {
-    let shown = |texel: DVec3| {
-        let mapped = tone_map(texel.as_vec3() * stops.exp2()).to_array();
-        DVec3::from_array(mapped.map(|channel| f64::from(srgb_from_linear(channel))))
-    };
-    let columns = truth.width().div_ceil(BLOCK);
-    let mut blocks = vec![(DVec3::ZERO, 0.0); columns * truth.height().div_ceil(BLOCK)];
-    for (index, (a, b)) in judged.texels().iter().zip(truth.texels()).enumerate() {
-        let (x, y) = (index % truth.width(), index / truth.width());
-        let (sum, count) = &mut blocks[y / BLOCK * columns + x / BLOCK];
-        *sum += shown(*a) - shown(*b);
-        *count += 1.0;
-    }
-    let squares = blocks.iter().fold([0.0; 2], |[all, color], (sum, count)| {
-        let apart = *sum / *count;
-        let grey = DVec3::splat(apart.element_sum() / 3.0);
-        [all + apart.length_squared(), color + (apart - grey).length_squared()]
-    });
-    squares.map(|square| (square / (3 * blocks.len()) as f64).sqrt())
-}
-
 impl Difference {
     /// Of pictures of one size.
     fn new(judged: &Texture, truth: &Texture, stops: f32) -> Self {
         let pairs = || judged.texels().iter().zip(truth.texels());
+        let width = truth.width().max(1);
         let count = 3.0 * pairs().count() as f64;
         let mean = |sum: f64| sum / count;
         let average = mean(truth.texels().iter().map(|texel| texel.element_sum()).sum());
@@ -100,13 +75,12 @@ impl Difference {
                 largest = (apart, index);
             }
         }
-        let width = truth.width().max(1);
         Self {
             error: square.sqrt() / average,
             ratio: mean(judged.texels().iter().map(|texel| texel.element_sum()).sum()) / average,
             largest: (largest.0, [largest.1 % width, largest.1 / width]),
             mean: average,
-            levels: levels(judged, truth, stops),
+            levels: levels(pairs().map(|(a, b)| (*a, *b)), width, BLOCK, stops),
         }
     }
 }
@@ -188,25 +162,5 @@ mod tests {
         let other = Difference::new(&picture([1.0, 2.0, 5.0, 2.0]), &truth, 0.0);
         // One of four pixels is off by 2, over a mean of 2
         assert_eq!((other.error, other.ratio, other.largest), (0.5, 1.25, (2.0, [0, 1])));
-    }
-
-    #[test]
-    fn levels_are_of_blocks_and_colours_apart() {
-        let picture = |odd: DVec3, even: DVec3| {
-            let texels = (0..64).map(|i| if (i + i / 8) % 2 == 0 { even } else { odd });
-            Texture::new(8, 8, texels.collect()).unwrap()
-        };
-        let grey = DVec3::splat(0.1);
-        let truth = picture(grey, grey);
-        // Noise that the blocks' means have not; twice as much in each channel; in one alone
-        let [noise, color] = levels(&picture(grey * 1.05, grey * 0.95), &truth, 0.0);
-        assert!(noise < 1.0 && color < 0.1, "{noise}, {color}");
-        let [all, color] = levels(&picture(grey * 2.0, grey * 2.0), &truth, 0.0);
-        assert!(all > 30.0 && color < 1e-9, "{all}, {color}");
-        let red = DVec3::new(0.2, 0.1, 0.1);
-        let [all, color] = levels(&picture(red, red), &truth, 0.0);
-        assert!((color / all - (2.0_f64 / 3.0).sqrt()).abs() < 0.02, "{all}, {color}");
-        // A stop more shows more
-        assert!(levels(&picture(red, red), &truth, 1.0)[0] > all);
     }
 }

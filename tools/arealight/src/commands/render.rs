@@ -65,6 +65,13 @@ pub struct Arguments {
     /// a sample; off with --tiles]
     #[arg(long, value_name = "LEVEL", conflicts_with = "tiles")]
     shadows: Option<Shadows>,
+    /// Go on with rounds of shadow rays until their noise, in levels of 255 as the screen shows the means of
+    /// 4 x 4 pixels, is below LEVELS; at most 64 rounds [default: one round]
+    #[arg(long, value_name = "LEVELS", conflicts_with_all = ["tiles", "reference"], value_parser = parse_levels)]
+    shadow_noise: Option<f64>,
+    /// Other random numbers, for the frames of a film
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u32,
     #[command(flatten)]
     quality: QualityArguments,
     /// Print the summary as JSON
@@ -231,6 +238,12 @@ fn parse_part(text: &str) -> Result<f32, String> {
     part.ok_or_else(|| "must be a number from 0 up to, but not, 1".to_owned())
 }
 
+/// Levels of 255.
+fn parse_levels(text: &str) -> Result<f64, String> {
+    let levels = text.parse().ok().filter(|levels: &f64| *levels > 0.0 && levels.is_finite());
+    levels.ok_or_else(|| "must be a number above 0".to_owned())
+}
+
 /// A width and a height such as `1280x720`.
 pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let side = |text: &str| text.parse().ok().filter(|side| (1..=8192).contains(side));
@@ -280,6 +293,9 @@ impl Summary<'_> {
             milliseconds(outcome.shading)
         ));
         lines.push(format!("         {}, by the clock on the wall", phases.to_text()));
+        if let Some(text) = outcome.rounds_text(arguments.shadow_level(), arguments.supersample.pow(2)) {
+            lines.push(text);
+        }
         if let Some(tiles) = &outcome.tiles {
             let classes: Vec<_> =
                 tiles.classes.iter().map(|(class, count)| format!("{count} {class}")).collect();
@@ -323,6 +339,8 @@ impl Summary<'_> {
                     .map(|(class, count)| (class.name(), count)).collect::<BTreeMap<_, _>>(),
                 "lights_per_tile": tiles.lights_per_tile(),
             })),
+            "shadow_rays": outcome.rays(arguments.shadow_level(), arguments.supersample.pow(2)),
+            "shadow_noise": outcome.noise,
             "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },
             "seconds": phases.to_json(),
             "picture": output,
@@ -364,6 +382,8 @@ mod tests {
         assert_eq!(parse_size("640x480"), Ok([640, 480]));
         assert_eq!(parse_part("0.01"), Ok(0.01));
         assert!(["nan", "1", "-0.1", ""].iter().all(|bad| parse_part(bad).is_err()));
+        assert_eq!(parse_levels("0.5"), Ok(0.5));
+        assert!(["nan", "inf", "0", "-1", ""].iter().all(|bad| parse_levels(bad).is_err()));
         for bad in ["", "640", "640x", "0x480", "640x9000", "-1x2", "1x2x3", "axb"] {
             assert!(parse_size(bad).is_err(), "{bad}");
         }

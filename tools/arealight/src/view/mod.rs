@@ -6,7 +6,6 @@ mod orbit;
 mod paint;
 mod script;
 mod state;
-mod truth;
 mod viewer;
 #[cfg(feature = "view")]
 mod window;

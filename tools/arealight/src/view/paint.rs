@@ -3,10 +3,10 @@
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
 use super::state::{KEYS, Mode, Partner, State};
-use super::truth::Distance;
 use super::viewer::{Cost, Shown};
 use crate::canvas::{Align, Canvas, Colour, LINE};
 use crate::differences::{SCALE, color, difference_colors};
+use crate::means::Distance;
 use crate::picture::{srgb_from_linear, tone_map};
 use glam::DVec3;
 use std::time::Duration;

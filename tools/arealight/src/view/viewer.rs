@@ -1,8 +1,8 @@
 //! A scene on the device, drawn as the state says: what has changed since the last frame alone is done again.
 
 use super::state::{Mode, Partner, State};
-use super::truth::{Distance, Truth};
 use super::{lamps, orbit::Orbit};
+use crate::means::{Distance, Means};
 use crate::shadows::Shadows;
 use arealight::plan::{ShadeOptions, ShadowHistory};
 use arealight::{Effects, Level, Quality};
@@ -58,8 +58,20 @@ struct Seen {
 /// A picture that was drawn.
 struct Drawn {
     of: (Seen, Level),
+    /// Of as many rounds of shadow rays as it has samples.
+    means: Means,
     radiance: Vec<DVec3>,
     time: Option<Duration>,
+}
+
+/// Rounds of shadow rays after which a picture at rest stays as it is.
+const MOST_ROUNDS: u32 = 64;
+
+impl Drawn {
+    /// Whether another round would change nothing, or no more than is seen.
+    fn is_done(&self) -> bool {
+        !self.of.0.shadows || self.means.samples() >= MOST_ROUNDS
+    }
 }
 
 /// A scene, and what was drawn of it last.
@@ -83,7 +95,7 @@ pub struct Viewer<'a> {
     emission: Vec<DVec3>,
     ours: Option<Drawn>,
     theirs: Option<Drawn>,
-    truth: Option<(Seen, Truth)>,
+    truth: Option<(Seen, Means)>,
     tried: Option<(Seen, Vec<Tried>)>,
 }
 
@@ -173,10 +185,12 @@ impl<'a> Viewer<'a> {
         &self.scene
     }
 
-    /// Samples a pixel of the truth so far.
+    /// Whether the next picture differs, although nobody does anything: shadows or the truth converge.
     #[cfg(feature = "view")]
-    pub fn truth_samples(&self) -> u32 {
-        self.truth.as_ref().map_or(0, |(_, truth)| truth.samples())
+    pub fn goes_on(&self, state: &State) -> bool {
+        let truth_samples = self.truth.as_ref().map_or(0, |(_, truth)| truth.samples());
+        state.needs_truth() && truth_samples < MOST_SAMPLES
+            || self.ours.as_ref().is_some_and(|drawn| !drawn.is_done())
     }
 
     /// Draws in another size from now on.
@@ -263,20 +277,33 @@ impl<'a> Viewer<'a> {
 
     fn draw_ours(&mut self, seen: &Seen, level: Level) -> Result<(), EngineError> {
         let of = (seen.clone(), level);
-        if self.ours.as_ref().is_some_and(|drawn| drawn.of == of) {
-            return Ok(());
-        }
-        self.begin()?;
-        let time = if seen.shadows { self.shade_with_shadows(level)? } else { self.shade(level)? };
-        self.ours = Some(Drawn { of, radiance: radiance(&mut self.renderer)?, time });
+        let before = self.ours.take().filter(|drawn| drawn.of == of);
+        let means = match before {
+            Some(drawn) if drawn.is_done() => {
+                self.ours = Some(drawn);
+                return Ok(());
+            }
+            Some(drawn) => drawn.means,
+            None => Means::new(self.emission.len()),
+        };
+        self.ours = Some(self.draw_round(of, means)?);
         Ok(())
+    }
+
+    /// Our picture once more, with other random numbers where it has any.
+    fn draw_round(&mut self, of: (Seen, Level), mut means: Means) -> Result<Drawn, EngineError> {
+        self.begin()?;
+        let seed = means.samples();
+        let time = if of.0.shadows { self.shade_with_shadows(of.1, seed)? } else { self.shade(of.1)? };
+        means.add(&radiance(&mut self.renderer)?, 1);
+        Ok(Drawn { of, radiance: means.mean(), means, time })
     }
 
     fn shade(&mut self, level: Level) -> Result<Option<Duration>, EngineError> {
         self.renderer.shade(self.surfaces(), level.quality())
     }
 
-    fn shade_with_shadows(&mut self, level: Level) -> Result<Option<Duration>, EngineError> {
+    fn shade_with_shadows(&mut self, level: Level, seed: u32) -> Result<Option<Duration>, EngineError> {
         let Shadows::Rays(shadow_rays, filter) = Shadows::for_samples(1) else { return self.shade(level) };
         if self.shadowed.as_ref().is_none_or(|(of, _)| *of != level) {
             let options = ShadeOptions { quality: level.quality(), shadow_rays, ..ShadeOptions::default() };
@@ -289,7 +316,7 @@ impl<'a> Viewer<'a> {
         }
         let mut total = Some(Duration::ZERO);
         for view in self.shadowed.iter().flat_map(|(_, views)| views) {
-            let took = self.renderer.shade_shadowed(view, 0)?;
+            let took = self.renderer.shade_shadowed(view, seed)?;
             total = total.zip(took).map(|(total, took)| total + took);
         }
         Ok(total)
@@ -314,7 +341,8 @@ impl<'a> Viewer<'a> {
                 *theirs = *ours;
             }
         }
-        self.theirs = Some(Drawn { of, radiance, time });
+        let means = Means::new(0);
+        self.theirs = Some(Drawn { of, means, radiance, time });
         Ok(())
     }
 
@@ -322,7 +350,7 @@ impl<'a> Viewer<'a> {
         let pixels = self.emission.len();
         let mut truth = match self.truth.take() {
             Some((of, truth)) if of == *seen => truth,
-            _ => Truth::new(pixels),
+            _ => Means::new(pixels),
         };
         if truth.samples() < MOST_SAMPLES {
             let coupled = self.surfaces().contains(Effects::COUPLED);
@@ -372,7 +400,7 @@ impl<'a> Viewer<'a> {
     }
 
     /// What was tried of a view, by the truth as far as it is known.
-    fn costs(&self, seen: &Seen, truth: Option<&Truth>) -> Vec<Cost> {
+    fn costs(&self, seen: &Seen, truth: Option<&Means>) -> Vec<Cost> {
         let tried = self.tried.as_ref().filter(|(of, _)| of == seen);
         let cost = |tried: &Tried| Cost {
             name: tried.name.clone(),
@@ -393,7 +421,7 @@ impl<'a> Viewer<'a> {
         let other = match state.mode {
             Mode::Picture => None,
             Mode::Wipe(Partner::Yardstick) => self.theirs.as_ref().map(|drawn| drawn.radiance.clone()),
-            Mode::Wipe(Partner::Truth) | Mode::Error => truth.map(Truth::mean),
+            Mode::Wipe(Partner::Truth) | Mode::Error => truth.map(Means::mean),
         };
         Shown {
             size: self.size,
@@ -410,7 +438,7 @@ impl<'a> Viewer<'a> {
 }
 
 /// Samples of the truth that are enough.
-pub const MOST_SAMPLES: u32 = 1 << 14;
+const MOST_SAMPLES: u32 = 1 << 14;
 
 /// The set without an effect, and without those that need it.
 fn without(surfaces: Effects, effect: Effects) -> Effects {

@@ -4,7 +4,7 @@
 use super::paint;
 use super::script::Script;
 use super::state::{Event, Key, State};
-use super::viewer::{MOST_SAMPLES, Viewer};
+use super::viewer::Viewer;
 use crate::failure::Failure;
 use crate::gpu;
 use crate::output::print;
@@ -151,8 +151,7 @@ impl Desk<'_> {
 
     /// Whether the next frame differs, although nobody does anything.
     fn goes_on(&self) -> bool {
-        let converges = self.state.needs_truth() && self.viewer.truth_samples() < MOST_SAMPLES;
-        self.script.is_some() || converges
+        self.script.is_some() || self.viewer.goes_on(&self.state)
     }
 }
 

@@ -342,6 +342,38 @@ fn render_makes_pictures_and_says_where() {
 }
 
 #[test]
+fn shadows_go_on_until_their_noise_is_low() {
+    let folder = tempfile::tempdir().unwrap();
+    if !device() {
+        return;
+    }
+    let rendered = |name: &str, more: &[&str]| {
+        let sweep = scene("sweep.glb");
+        let common = ["render", &sweep, "--size", "48x32", "--supersample", "1", "--json", "-o", name];
+        let output = run(folder.path(), &[&common, more].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).expect("--json prints JSON")
+    };
+    let pixels = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    let one = ["--shadows", "rays:1"];
+    let summary = rendered("once.png", &one);
+    assert_eq!((&summary["shadow_rays"], &summary["shadow_noise"]), (&1.into(), &serde_json::Value::Null));
+    // Two rounds tell what noise there is: half of it takes about four times the rays
+    let two = rendered("two.png", &[&one[..], &["--shadow-noise", "100"]].concat());
+    assert_eq!(two["shadow_rays"], 2);
+    let noise = two["shadow_noise"].as_f64().unwrap();
+    let half = (0.5 * noise).to_string();
+    let eight = rendered("eight.png", &[&one[..], &["--shadow-noise", &half]].concat());
+    assert!(eight["shadow_noise"].as_f64().unwrap() <= 0.5 * noise && noise > 1.0, "{noise}: {eight}");
+    assert!((3..=16).contains(&eight["shadow_rays"].as_u64().unwrap()), "{eight}");
+    // A seed is a picture of its own, the same one each time
+    let seed = |name| rendered(name, &[&one[..], &["--seed", "1"]].concat());
+    (seed("a.png"), seed("b.png"));
+    assert!(pixels("a.png") == pixels("b.png") && pixels("a.png") != pixels("once.png"));
+    refuse(folder.path(), &["render", "--shadow-noise", "0"], 2, &["--shadow-noise", "above 0"]);
+}
+
+#[test]
 fn eval_answers_in_order_with_reasons_and_measures() {
     let folder = tempfile::tempdir().unwrap();
     if !device() {

@@ -2,6 +2,7 @@
 
 use super::Arguments;
 use super::bands::{Band, MOST_SAMPLES};
+use crate::means::Means;
 use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::shadows::Shadows;
@@ -9,7 +10,7 @@ use arealight::plan::{Output, ShadeOptions, ShadowHistory, TileOptions};
 use arealight::{Effects, Quality};
 use arealight_engine::{Engine, EngineError, Reference, SceneRenderer, TileCounts};
 use arealight_scene::{Camera, Scene, SceneBuffers};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use indicatif::ProgressBar;
 use std::time::Duration;
 
@@ -21,14 +22,23 @@ pub struct Outcome {
     pub picture: Picture,
     /// The exposure that the picture has.
     pub stops: f32,
+    /// Rounds of shadow rays: of the band that has most.
+    pub rounds: u32,
+    /// Their noise in levels of 255, where it is known: of the band that has most.
+    pub noise: Option<f64>,
 }
+
+/// The most rounds of shadow rays.
+const MOST_ROUNDS: u32 = 64;
+/// The most bands: rows of the largest picture.
+const MOST_BANDS: u32 = 1 << 16;
 
 impl Outcome {
     /// A picture of `size` without a row yet.
     fn begin([width, height]: [u32; 2]) -> Self {
         let picture = Picture { width, height, pixels: vec![] };
         let none = Some(Duration::ZERO);
-        Self { visibility: none, shading: none, tiles: None, picture, stops: 0.0 }
+        Self { visibility: none, shading: none, tiles: None, picture, stops: 0.0, rounds: 0, noise: None }
     }
 
     /// Adds the rows of a band below those that are there.
@@ -47,6 +57,23 @@ impl Outcome {
             (Some(all), Some(one)) => Some(all + one),
             (all, one) => all.or(one),
         };
+    }
+
+    /// The shadow rays that a pixel of so many samples has had.
+    pub fn rays(&self, shadows: Shadows, samples: u32) -> Option<u32> {
+        match shadows {
+            Shadows::Rays(rays, _) if self.rounds > 0 => Some(rays * samples * self.rounds),
+            _ => None,
+        }
+    }
+
+    /// Those in words, and what noise they left.
+    pub fn rounds_text(&self, shadows: Shadows, samples: u32) -> Option<String> {
+        let rays = self.rays(shadows, samples)?;
+        Some(match self.noise {
+            None => format!("shadows  {rays} rays a pixel"),
+            Some(noise) => format!("shadows  {rays} rays a pixel; their noise is {noise:.2} levels of 255"),
+        })
     }
 }
 
@@ -78,12 +105,26 @@ pub fn render(
         let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, camera, in_band)?;
         let visibility = renderer.visibility()?;
         // So far there is what lamps show of themselves
-        if matches!(arguments.exposure, Exposure::Auto) {
-            emission.extend(band.keep(size[0], colors(&mut renderer)?));
+        let lamps = colors(&mut renderer)?;
+        // Frames of a film, bands and rounds each have seeds of their own, one after the other
+        let seed =
+            arguments.seed.wrapping_mul(MOST_BANDS).wrapping_add(index as u32).wrapping_mul(MOST_ROUNDS);
+        let view = View { surfaces, quality, seed, light_count: scene.lights.len() };
+        let (mut shading, tiles) = shade(&mut renderer, &buffers, &view, arguments, &bar)?;
+        let mut found = colors(&mut renderer)?;
+        if let Some(rounds) = Rounds::of(arguments, in_band[0]) {
+            let (means, took) = rounds.go_on(&mut renderer, &buffers, &view, (&lamps, &found), &bar)?;
+            shading = shading.zip(took).map(|(one, more)| one + more);
+            found = lamps.iter().zip(means.mean()).map(|(lamp, mean)| *lamp + mean.as_vec3()).collect();
+            sum.rounds = sum.rounds.max(means.samples());
+            sum.noise = sum.noise.into_iter().chain(rounds.noise(&means, &lamps)).reduce(f64::max);
+        } else if arguments.reference.is_none() && arguments.shadow_level() != Shadows::Off {
+            sum.rounds = 1;
         }
-        let view = View { surfaces, quality, index: index as u32, light_count: scene.lights.len() };
-        let (shading, tiles) = shade(&mut renderer, &buffers, &view, arguments, &bar)?;
-        sum.add(visibility, shading, tiles, band.keep(size[0], colors(&mut renderer)?));
+        if matches!(arguments.exposure, Exposure::Auto) {
+            emission.extend(band.keep(size[0], lamps));
+        }
+        sum.add(visibility, shading, tiles, band.keep(size[0], found));
     }
     bar.finish_and_clear();
     sum.stops = match arguments.exposure {
@@ -98,12 +139,76 @@ fn colors(renderer: &mut SceneRenderer<'_>) -> Result<Vec<Vec3>, EngineError> {
     Ok(renderer.radiance()?.into_iter().map(glam::Vec4::truncate).collect())
 }
 
+/// Rounds of shadow rays, each with other random numbers, until little noise is left.
+struct Rounds<'a> {
+    arguments: &'a Arguments,
+    /// The level of noise that is little.
+    most: f64,
+    /// Samples in a row.
+    width: u32,
+}
+
+impl<'a> Rounds<'a> {
+    /// None where one round is all that is asked for.
+    fn of(arguments: &'a Arguments, width: u32) -> Option<Self> {
+        let most = arguments.shadow_noise.filter(|_| arguments.shadow_level() != Shadows::Off)?;
+        Some(Self { arguments, most, width })
+    }
+
+    /// Goes on from what `seen` shows after the first round, before which there were `lamps` alone: the means
+    /// of what surfaces reflect.
+    fn go_on(
+        &self,
+        renderer: &mut SceneRenderer<'_>,
+        scene: &SceneBuffers,
+        view: &View,
+        (lamps, seen): (&[Vec3], &[Vec3]),
+        bar: &ProgressBar,
+    ) -> Result<(Means, Option<Duration>), EngineError> {
+        let (mut means, mut total) = (Means::new(lamps.len()), Some(Duration::ZERO));
+        let add = |means: &mut Means, before: &[Vec3], after: &[Vec3]| {
+            let apart = before.iter().zip(after).map(|(a, b)| b.as_dvec3() - a.as_dvec3());
+            means.add(&apart.collect::<Vec<DVec3>>(), 1);
+        };
+        add(&mut means, lamps, seen);
+        let mut before = seen.to_vec();
+        while means.samples() < MOST_ROUNDS && self.noise(&means, lamps).is_none_or(|noise| noise > self.most)
+        {
+            // Each half of the means goes through seeds that follow each other: such rays complement each other
+            let [half, index] = [means.samples() % 2, means.samples() / 2];
+            let seed = view.seed.wrapping_add(half * (MOST_ROUNDS / 2) + index);
+            let quality = (view.surfaces, view.quality);
+            let took = shade_with_shadows(renderer, scene, quality, (self.arguments.shadow_level(), seed))?;
+            total = total.zip(took).map(|(total, took)| total + took);
+            // Each round is added to what is there
+            let after = colors(renderer)?;
+            add(&mut means, &before, &after);
+            before = after;
+            bar.set_message(format!("bands, {} rounds of shadow rays", means.samples()));
+        }
+        Ok((means, total))
+    }
+
+    /// The noise of what is known so far.
+    fn noise(&self, means: &Means, lamps: &[Vec3]) -> Option<f64> {
+        let stops = match self.arguments.exposure {
+            Exposure::Stops(stops) => stops,
+            Exposure::Auto => {
+                let pixels: Vec<Vec3> = means.mean().into_iter().map(DVec3::as_vec3).collect();
+                let height = pixels.len() as u32 / self.width.max(1);
+                Picture { width: self.width, height, pixels }.auto_stops(lamps)
+            }
+        };
+        means.noise(self.width as usize, self.arguments.supersample as usize, stops)
+    }
+}
+
 /// What a band is shaded with.
 struct View {
     surfaces: Effects,
     quality: Quality,
-    /// Of the band.
-    index: u32,
+    /// The first of the band's seeds.
+    seed: u32,
     light_count: usize,
 }
 
@@ -115,11 +220,11 @@ fn shade(
     arguments: &Arguments,
     bar: &ProgressBar,
 ) -> Result<(Option<Duration>, Option<TileCounts>), EngineError> {
-    let View { surfaces, quality, index, light_count } = *view;
+    let View { surfaces, quality, seed, light_count } = *view;
     let took = match (arguments.reference, arguments.tiles) {
         (None, None) => {
             let shadows = arguments.shadow_level();
-            shade_with_shadows(renderer, scene, (surfaces, quality), (shadows, index))?
+            shade_with_shadows(renderer, scene, (surfaces, quality), (shadows, seed))?
         }
         (None, Some(cull_threshold)) => {
             let options = ShadeOptions { quality, output: Output::Add, ..ShadeOptions::default() };
@@ -139,7 +244,7 @@ fn shade(
             let samples = arguments.samples_a_subpixel(samples);
             let shadows = arguments.shadow_level() != Shadows::Off;
             let coupled = surfaces.contains(Effects::COUPLED);
-            let reference = Reference { samples, shadows, coupled, seed: index };
+            let reference = Reference { samples, shadows, coupled, seed };
             let before = bar.position();
             return Ok((
                 renderer.reference(reference, |done| bar.set_position(before + u64::from(done)))?,

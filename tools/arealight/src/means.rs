@@ -1,15 +1,15 @@
-//! A truth that converges: the mean of independent pictures by Monte Carlo, in two halves that tell its
-//! noise.
+//! A picture that converges: the mean of independent ones, in two halves that tell its noise.
 
+use crate::picture::{BLOCK, levels};
 use glam::DVec3;
 
 /// Sums of pictures.
-pub struct Truth {
+pub struct Means {
     sums: [Vec<DVec3>; 2],
     samples: [u32; 2],
 }
 
-/// How far a picture is from the truth, each a root of the mean square over the truth's mean.
+/// How far a picture is from one that converges to the truth, each a root of the mean square over the truth's mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Distance {
     /// What is left without the truth's own noise; none where so little is left that it may be chance.
@@ -21,7 +21,7 @@ pub struct Distance {
 /// An error is known from this part of the noise on.
 const LEAST_PART: f64 = 0.2;
 
-impl Truth {
+impl Means {
     /// Nothing is known yet of so many pixels.
     pub fn new(pixels: usize) -> Self {
         Self { sums: [vec![DVec3::ZERO; pixels], vec![DVec3::ZERO; pixels]], samples: [0; 2] }
@@ -45,6 +45,19 @@ impl Truth {
     pub fn mean(&self) -> Vec<DVec3> {
         let scale = 1.0 / f64::from(self.samples().max(1));
         self.sums[0].iter().zip(&self.sums[1]).map(|(a, b)| (*a + *b) * scale).collect()
+    }
+
+    /// The noise of the mean as a screen shows it, in [`levels`], of pictures so many samples wide with
+    /// `factor` x `factor` of them a pixel; none before both halves are there.
+    pub fn noise(&self, width: usize, factor: usize, stops: f32) -> Option<f64> {
+        let [a, b] = self.samples.map(f64::from);
+        let half = |half: usize| {
+            let scale = 1.0 / f64::from(self.samples[half]);
+            self.sums[half].iter().map(move |sum| *sum * scale)
+        };
+        // The variance of the mean, by the difference of two independent means
+        let part = (a * b).sqrt() / (a + b);
+        (a * b > 0.0).then(|| part * levels(half(0).zip(half(1)), width, BLOCK * factor, stops)[0])
     }
 
     /// How far a picture is, over the pixels that count; none before both halves are there, or where the
@@ -86,9 +99,9 @@ mod tests {
     #[test]
     fn the_noise_of_the_truth_is_not_taken_for_error() {
         const PIXELS: usize = 20_000;
-        let mut truth = Truth::new(PIXELS);
+        let mut truth = Means::new(PIXELS);
         let exact = vec![DVec3::splat(2.0); PIXELS];
-        assert_eq!(truth.distance(&exact, |_| true), None);
+        assert_eq!((truth.distance(&exact, |_| true), truth.noise(100, 1, 0.0)), (None, None));
         for step in 0..5 {
             let picture: Vec<DVec3> = (0..PIXELS as u64)
                 .map(|pixel| DVec3::splat(2.0 + noise(pixel * 5 + step) / 2_f64.sqrt()))
@@ -96,6 +109,10 @@ mod tests {
             truth.add(&picture, 2);
         }
         assert_eq!(truth.samples(), 10);
+        // On a screen the noise of what is white is none; four stops below, of means of 4 x 4 samples
+        assert_eq!(truth.noise(100, 1, 4.0), Some(0.0));
+        let noise = |factor| truth.noise(100, factor, -4.0).unwrap();
+        assert!((noise(1) / noise(2) - 2.0).abs() < 0.2, "{} and {}", noise(1), noise(2));
         // Five pictures of a variance of 1/24 each
         let expected = (1.0_f64 / 24.0 / 5.0).sqrt() / 2.0;
         let found = truth.distance(&exact, |_| true).unwrap();
