@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// What a scene is lit by.
 #[derive(clap::Args, Clone, Copy, Debug)]
+#[command(next_help_heading = "Scene")]
 pub struct LightArguments {
     /// The radius of points and spots of `KHR_lights_punctual`, in metres, and show suns half a degree wide;
     /// without it they are left out, but those whose `extras.arealight.radius` says one

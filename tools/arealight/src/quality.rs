@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 /// How lights are integrated.
 #[derive(clap::Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Quality")]
 pub struct QualityArguments {
     /// The quality level; docs/cost.md says which to take [default: exact, as the recorder's and the GLSL's]
     #[arg(long, value_name = "LEVEL", value_parser = level_parser())]

@@ -24,6 +24,7 @@ use std::time::{Duration, Instant};
 /// Visibility by traversal of a bounding volume hierarchy, shading by linearly transformed cosines, both on
 /// the GPU, with shadows by rays that are drawn from the lobes.
 #[derive(clap::Args)]
+#[command(next_help_heading = "Picture")]
 pub struct Arguments {
     /// A .gltf or .glb file; the built-in demo scene if absent
     scene: Option<PathBuf>,
@@ -37,7 +38,7 @@ pub struct Arguments {
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
     size: [u32; 2],
     /// The file's camera of this name; its first one, or one that frames the scene, if absent
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help_heading = "Scene")]
     camera: Option<String>,
     #[command(flatten)]
     device: gpu::DeviceArgument,
@@ -75,7 +76,7 @@ pub struct Arguments {
     #[command(flatten)]
     quality: QualityArguments,
     /// Print the summary as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = None)]
     json: bool,
 }
 

@@ -27,7 +27,7 @@ pub struct Arguments {
     #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = super::render::parse_size)]
     size: [u32; 2],
     /// The file's camera of this name to begin with; its first one, or one that frames the scene, if absent
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help_heading = "Scene")]
     camera: Option<String>,
     /// Exposure to begin with, in stops
     #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true)]

@@ -12,6 +12,7 @@ use std::path::Path;
 
 /// Which device a command runs on.
 #[derive(clap::Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Device")]
 pub struct DeviceArgument {
     /// The Vulkan device: a part of its name, or its number, as `arealight devices` lists them.
     #[arg(long, value_name = "NAME|NUMBER")]

@@ -47,6 +47,11 @@ fn help_and_version() {
     for command in ["render", "eval", "effects", "fit", "inspect", "devices", "Exit codes", "--tolerance"] {
         assert!(text(&help.stdout).contains(command), "{command}");
     }
+    // A long list is in groups
+    let render = text(&run(folder.path(), &["render", "--help"]).stdout);
+    for group in ["Scene:", "Picture:", "Quality:", "Device:", "Options:"] {
+        assert!(render.lines().any(|line| line == group), "{group}: {render}");
+    }
     assert!(run(folder.path(), &["--version"]).status.success());
     // Without a command it says what there is
     let nothing = run(folder.path(), &[]);
