@@ -1,7 +1,8 @@
 //! Our own scenes, and frames of them.
 
 use arealight::Light;
-use arealight_engine::{Engine, SceneRenderer};
+use arealight::plan::{ShadeOptions, TileOptions};
+use arealight_engine::{Engine, SceneRenderer, TileCounts};
 use arealight_scene::{Scene, SceneBuffers};
 use glam::{Vec3, Vec4};
 use std::path::Path;
@@ -24,6 +25,42 @@ pub fn with_renderer<T>(
     let buffers = SceneBuffers::new(scene, camera.position).expect("our own scenes fit");
     let constants = buffers.constants(&camera, size, Vec3::ZERO);
     act(&mut SceneRenderer::new(engine, &buffers, lights, constants, size).expect("a renderer"))
+}
+
+/// The scene without what it emits, which would be rounded with what is reflected.
+pub fn black(scene: &Scene) -> Scene {
+    let mut black = scene.clone();
+    black.materials.iter_mut().for_each(|material| material.emission = Vec3::ZERO);
+    black
+}
+
+/// What a scene reflects of `lights`.
+pub fn reflected(
+    engine: &Engine,
+    scene: &Scene,
+    lights: &[Light],
+    size: [u32; 2],
+    options: ShadeOptions,
+) -> Vec<Vec4> {
+    with_renderer(engine, &black(scene), lights, size, |renderer| {
+        renderer.shade(options.surfaces, options.quality).unwrap();
+        renderer.radiance().unwrap()
+    })
+}
+
+/// The same by tiles, and what was found of these.
+pub fn reflected_by_tiles(
+    engine: &Engine,
+    scene: &Scene,
+    lights: &[Light],
+    size: [u32; 2],
+    (options, tiles): (ShadeOptions, TileOptions),
+) -> (Vec<Vec4>, TileCounts) {
+    with_renderer(engine, &black(scene), lights, size, |renderer| {
+        let view = renderer.tiled(options, tiles).unwrap();
+        renderer.shade_tiled(&view).unwrap();
+        (renderer.radiance().unwrap(), view.counts(lights.len()).unwrap())
+    })
 }
 
 /// The bits of the picture that was shaded.

@@ -164,6 +164,17 @@ impl TestEngine {
         comparison.assert_all();
     }
 
+    /// How far radiance spreads over views on a circle about the normal, whose tangent is `tilt`.
+    pub fn spread_about_the_normal(&self, surface: Surface, vertices: &[DVec3], tilt: f64) -> f32 {
+        let at = |index: u32| {
+            let (sin, cos) = (f64::from(index) * 0.1).sin_cos();
+            point(surface, DVec3::new(cos * tilt, sin * tilt, 1.0), vertices.to_vec(), true)
+        };
+        let answers = self.eval(&(0..64).map(at).collect::<Vec<_>>(), Quality::default()).unwrap();
+        let most = answers.iter().fold(Vec3::MIN, |most, answer| most.max(*answer));
+        (most - answers.iter().fold(Vec3::MAX, |least, answer| least.min(*answer))).max_element()
+    }
+
     /// Asserts that surfaces with a layer of no weight are those without it, to the bit. The twin: most with
     /// the layer are not.
     pub fn assert_none_to_the_bit(

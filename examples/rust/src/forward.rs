@@ -4,12 +4,13 @@
 use crate::Result;
 use crate::draw::{Draw, DrawOptions, Users, image};
 use crate::picture::Picture;
+use crate::recorded::upload_table;
 use crate::scene;
-use arealight::PackedLights;
+use arealight::{LightTable, PackedLights};
 use arealight_host::{
     Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Host, Image, Location, Memory, Usage,
 };
-use arealight_vk::{Context, TableFormat, TableImage};
+use arealight_vk::{Context, TableImage};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 
@@ -89,7 +90,9 @@ impl Forward {
         let depth = image(host, "depth", vk::Format::D32_SFLOAT, size, usage)?;
 
         // Give the light table memory, and fill it
-        let (table, table_memory) = upload_table(host)?;
+        // SAFETY: the handles are of one device, which goes after the image, which goes after the frames.
+        let context = unsafe { Context::new(host.instance(), host.physical_device(), host.device()) }?;
+        let (table, table_memory) = upload_table(host, &context, &LightTable::ggx())?;
 
         // Point a set at the table and at each place's lights
         let bindings = Bindings::new(host)?;
@@ -163,28 +166,6 @@ impl Forward {
         // What the render pass left is visible to transfers
         Picture::read(&self.frames, &self.radiance, Usage::COPY_SOURCE)
     }
-}
-
-/// The table on the device, with its memory.
-fn upload_table(host: &Host) -> Result<(TableImage, Memory)> {
-    // doc: table
-    let table = arealight::LightTable::ggx();
-    // SAFETY: the handles are of one device, which goes after the image, which goes after the frames.
-    let mut image = unsafe {
-        let context = Context::new(host.instance(), host.physical_device(), host.device())?;
-        TableImage::new(&context, &table, TableFormat::Rgba16Float)?
-    };
-    let memory = host.memory("light table", image.memory_requirements())?;
-    // SAFETY: the memory was made for the image.
-    unsafe {
-        let (place, offset) = memory.place();
-        image.bind_memory(place, offset)?;
-    }
-    // doc end
-    let staging = host.storage_buffer("light table, staged", &image.bytes(&table))?;
-    // SAFETY: the staging buffer holds the table until the commands are done.
-    host.submit(|commands| unsafe { image.record_upload(commands, staging.handle(), 0) })?;
-    Ok((image, memory))
 }
 
 /// Set 0 of `forward.frag`: the table with a sampler, and the lights.

@@ -5,7 +5,7 @@ use crate::g_buffer::GBuffer;
 use crate::picture::Picture;
 use crate::{Result, scene};
 use arealight::plan::{Output, ShadeOptions, TileOptions};
-use arealight::{PackedLights, Plane, SpecularLobes};
+use arealight::{LightTable, PackedLights, Plane, SpecularLobes};
 use arealight_host::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Host, Location, Memory, Usage};
 use arealight_vk::{
     Context, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources, TableFormat, TableImage,
@@ -39,6 +39,29 @@ struct Place {
     light_vertices: Buffer,
 }
 
+/// The table on the device, with its memory.
+pub(crate) fn upload_table(
+    host: &Host,
+    context: &Context,
+    table: &LightTable,
+) -> Result<(TableImage, Memory)> {
+    // doc: table
+    // Give the light table memory, and fill it
+    // SAFETY: the image goes after the frames, and its memory, which was made for it, after the image.
+    let mut image = unsafe { TableImage::new(context, table, TableFormat::Rgba16Float) }?;
+    let memory = host.memory("light table", image.memory_requirements())?;
+    // SAFETY: as above.
+    unsafe {
+        let (place, offset) = memory.place();
+        image.bind_memory(place, offset)?;
+    }
+    let staging = host.storage_buffer("light table, staged", &image.bytes(table))?;
+    // SAFETY: the staging buffer holds the table until the commands are done.
+    host.submit(|commands| unsafe { image.record_upload(commands, staging.handle(), 0) })?;
+    // doc end
+    Ok((image, memory))
+}
+
 impl Recorded {
     /// Makes the engine for pictures of `size` pixels.
     pub fn new(host: &Host, size: [u32; 2]) -> Result<Self> {
@@ -52,7 +75,7 @@ impl Recorded {
         // light. It adds to the emission that was drawn
         let options = ShadeOptions { from_depth: true, output: Output::Add, ..ShadeOptions::default() };
         GBuffer::formats().check(options)?; // says which image has another format than it should
-        let table = arealight::LightTable::ggx();
+        let table = LightTable::ggx();
         // With tiles, for scenes of many lights. (TileOptions::default() classifies no frame of two.)
         let tiles = TileOptions { least_quads: 0, ..TileOptions::default() };
         let info = ShadePassInfo { tiles: Some(tiles), table_size: table.size(), ..options.into() };
@@ -60,20 +83,7 @@ impl Recorded {
         let shade = unsafe { ShadePass::new(&context, info) }?;
         // doc end
 
-        // doc: table
-        // Give the light table memory, and fill it
-        // SAFETY: the image goes after the frames, and its memory, which was made for it, after the image.
-        let mut image = unsafe { TableImage::new(&context, &table, TableFormat::Rgba16Float) }?;
-        let memory = host.memory("light table", image.memory_requirements())?;
-        // SAFETY: as above.
-        unsafe {
-            let (place, offset) = memory.place();
-            image.bind_memory(place, offset)?;
-        }
-        let staging = host.storage_buffer("light table, staged", &image.bytes(&table))?;
-        // SAFETY: the staging buffer holds the table until the commands are done.
-        host.submit(|commands| unsafe { image.record_upload(commands, staging.handle(), 0) })?;
-        // doc end
+        let (image, memory) = upload_table(host, &context, &table)?;
 
         // doc: tiles
         // With tiles: upload where the horizons of the table's lobes are

@@ -1,7 +1,7 @@
 //! Tiles of coated surfaces: a coat has a horizon of its own, and takes light from what is below.
 
 use arealight_scene::{Image, SceneMaterial, Texture, Wrap};
-use arealight_tests::frame::scene;
+use arealight_tests::frame::{reflected, reflected_by_tiles, scene};
 use arealight_tests::prelude::*;
 
 const SIZE: [u32; 2] = [61, 37];
@@ -13,21 +13,10 @@ pub fn pictures(
     lights: &[Light],
     (quality, cull_threshold): (Quality, f32),
 ) -> (Vec<Vec4>, Vec<Vec4>, u64) {
-    let mut scene = scene.clone();
-    scene.materials.iter_mut().for_each(|material| material.emission = Vec3::ZERO);
-    let surfaces = scene.effects();
-    let plain = with_renderer(engine, &scene, lights, SIZE, |renderer| {
-        renderer.shade(surfaces, quality).unwrap();
-        renderer.radiance().unwrap()
-    });
+    let options = ShadeOptions { surfaces: scene.effects(), quality, ..ShadeOptions::default() };
     let tiles = TileOptions { cull_threshold, capacity: 1000, least_quads: 0 };
-    with_renderer(engine, &scene, lights, SIZE, |renderer| {
-        let options = ShadeOptions { surfaces, quality, ..ShadeOptions::default() };
-        let view = renderer.tiled(options, tiles).unwrap();
-        renderer.shade_tiled(&view).unwrap();
-        let counts = view.counts(lights.len()).unwrap();
-        (plain, renderer.radiance().unwrap(), counts.lights)
-    })
+    let (tiled, counts) = reflected_by_tiles(engine, scene, lights, SIZE, (options, tiles));
+    (reflected(engine, scene, lights, SIZE, options), tiled, counts.lights)
 }
 
 /// A square of half the width `size`, which faces both ways.

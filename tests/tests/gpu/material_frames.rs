@@ -1,7 +1,7 @@
 //! Frames of every material: with tiles and without, and beside the Monte Carlo reference.
 
 use arealight_benches::materials::{self, MaterialErrors, Options};
-use arealight_tests::frame::scene;
+use arealight_tests::frame::{reflected, reflected_by_tiles, scene};
 use arealight_tests::prelude::*;
 
 #[test]
@@ -14,8 +14,7 @@ fn frames_of_materials_are_the_same_with_tiles() {
 fn assert_tiles(name: &str) {
     const SIZE: [u32; 2] = [61, 37];
     let Some(engine) = TestEngine::new() else { return };
-    let mut scene = scene(name);
-    scene.materials.iter_mut().for_each(|material| material.emission = Vec3::ZERO);
+    let scene = scene(name);
     let center = scene.bounds.center();
     let mut lights = scene.lights.clone();
     // Low lights that stand on the floor and across it, which lobes that lean below the surface see
@@ -36,18 +35,10 @@ fn assert_tiles(name: &str) {
         // With and without a glossy lobe, whose horizon tiles know of
         for surfaces in [scene.effects(), scene.effects() - Effects::GLOSSY] {
             let quality = Quality { horizon, ..Quality::default() };
-            let plain = with_renderer(&engine, &scene, &lights, SIZE, |renderer| {
-                renderer.shade(surfaces, quality).unwrap();
-                renderer.radiance().unwrap()
-            });
-            let (tiled, listed) = with_renderer(&engine, &scene, &lights, SIZE, |renderer| {
-                let tiles = TileOptions { cull_threshold, capacity: 1000, least_quads: 0 };
-                let options = ShadeOptions { surfaces, quality, ..ShadeOptions::default() };
-                let view = renderer.tiled(options, tiles).unwrap();
-                renderer.shade_tiled(&view).unwrap();
-                let counts = view.counts(lights.len()).unwrap();
-                (renderer.radiance().unwrap(), counts.lights)
-            });
+            let options = ShadeOptions { surfaces, quality, ..ShadeOptions::default() };
+            let tiles = TileOptions { cull_threshold, capacity: 1000, least_quads: 0 };
+            let plain = reflected(&engine, &scene, &lights, SIZE, options);
+            let (tiled, counts) = reflected_by_tiles(&engine, &scene, &lights, SIZE, (options, tiles));
             let different = |a: &[Vec4], b: &[Vec4]| {
                 // A rounding of each light's form factor, of radiances of 24 and 1
                 let apart = |(a, b): &(&Vec4, &Vec4)| {
@@ -58,11 +49,8 @@ fn assert_tiles(name: &str) {
             };
             assert_eq!(different(&plain, &tiled), 0, "{name}, {horizon:?}, {cull_threshold}, {surfaces}");
             // The twin: without the first light pictures differ
-            let fewer = with_renderer(&engine, &scene, &lights[1..], SIZE, |renderer| {
-                renderer.shade(surfaces, quality).unwrap();
-                renderer.radiance().unwrap()
-            });
-            assert!(listed > 0 && different(&plain, &fewer) > 100, "{horizon:?}");
+            let fewer = reflected(&engine, &scene, &lights[1..], SIZE, options);
+            assert!(counts.lights > 0 && different(&plain, &fewer) > 100, "{horizon:?}");
         }
     }
 }

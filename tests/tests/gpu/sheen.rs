@@ -98,28 +98,14 @@ fn black_sheen_is_none_to_the_bit() {
 fn at_the_normal_sheen_does_not_jump() {
     let Some(engine) = TestEngine::new() else { return };
     let mut random = Random::new(5);
-    let quality = Quality::default();
     for roughness in [0.0, 0.1, 0.3, 0.6, 1.0] {
         let sheen = Some(Sheen { color: DVec3::ONE, roughness });
         let surface = Surface { sheen, coat: None, ..with_sheen(&mut random, 1) };
         let vertices = random.polygon(DVec3::new(0.5, 0.2, 1.0), 5, 0.3, 0.8);
         // Views a hundred-thousandth away on all sides, and far away
-        let at = |theta: f64| -> Vec<Vec3> {
-            let points: Vec<EvalPoint> = (0..12)
-                .map(|i| {
-                    let (y, x) = (f64::from(i) / 12.0 * std::f64::consts::TAU).sin_cos();
-                    let view = DVec3::new(theta.sin() * x, theta.sin() * y, theta.cos());
-                    point(surface, view, vertices.clone(), true)
-                })
-                .collect();
-            engine.eval(&points, quality).unwrap()
-        };
-        let spread = |answers: &[Vec3]| {
-            let differences = answers.iter().map(|answer| (*answer - answers[0]).abs().max_element());
-            differences.fold(0.0_f32, f32::max)
-        };
-        assert!(spread(&at(1e-5)) < 1e-4, "{roughness}: {}", spread(&at(1e-5)));
-        assert!(spread(&at(0.5)) > 3e-4, "{roughness}: {}", spread(&at(0.5)));
+        let spread = |tilt| engine.spread_about_the_normal(surface, &vertices, tilt);
+        assert!(spread(1e-5) < 1e-4, "{roughness}: {}", spread(1e-5));
+        assert!(spread(0.5) > 3e-4, "{roughness}: {}", spread(0.5));
     }
 }
 

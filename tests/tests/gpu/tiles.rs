@@ -3,7 +3,7 @@
 use arealight::TileClass;
 use arealight::kernels::{CLASSIFY, SHADE};
 use arealight_engine::TileCounts;
-use arealight_tests::frame::scene;
+use arealight_tests::frame::{black, reflected, reflected_by_tiles, scene};
 use arealight_tests::prelude::*;
 use arealight_vk::Error;
 use std::sync::Arc;
@@ -18,29 +18,13 @@ struct Pictures {
     counts: TileCounts,
 }
 
-fn black(scene: &Scene) -> Scene {
-    // What is seen to emit would be rounded with what is reflected
-    let mut black = scene.clone();
-    black.materials.iter_mut().for_each(|material| material.emission = Vec3::ZERO);
-    black
-}
-
-/// Hands a view of the scene under `lights` on.
-fn with_view<T>(
-    engine: &TestEngine,
-    scene: &Scene,
-    lights: &[Light],
-    act: impl FnOnce(&mut SceneRenderer<'_>) -> T,
-) -> T {
-    with_renderer(engine, &black(scene), lights, SIZE, act)
+fn of(surfaces: Effects) -> ShadeOptions {
+    ShadeOptions { surfaces, ..ShadeOptions::default() }
 }
 
 /// The picture without tiles.
 fn plain(engine: &TestEngine, scene: &Scene, lights: &[Light], surfaces: Effects) -> Vec<Vec4> {
-    with_view(engine, scene, lights, |renderer| {
-        renderer.shade(surfaces, Quality::default()).unwrap();
-        renderer.radiance().unwrap()
-    })
+    reflected(engine, scene, lights, SIZE, of(surfaces))
 }
 
 fn pictures(
@@ -50,14 +34,8 @@ fn pictures(
     surfaces: Effects,
     tiles: TileOptions,
 ) -> Pictures {
-    let plain = plain(engine, scene, lights, surfaces);
-    with_view(engine, scene, lights, |renderer| {
-        let options = ShadeOptions { surfaces, ..ShadeOptions::default() };
-        let view = renderer.tiled(options, tiles).unwrap();
-        renderer.shade_tiled(&view).unwrap();
-        let tiled = renderer.radiance().unwrap();
-        Pictures { plain, tiled, counts: view.counts(lights.len()).unwrap() }
-    })
+    let (tiled, counts) = reflected_by_tiles(engine, scene, lights, SIZE, (of(surfaces), tiles));
+    Pictures { plain: plain(engine, scene, lights, surfaces), tiled, counts }
 }
 
 /// Every frame is classified, however few lights it has.
@@ -327,7 +305,7 @@ fn lights_that_are_culled_contribute_less_than_the_threshold() {
 fn lists(engine: &TestEngine, squares: usize, rounds: usize, tiles: TileOptions) -> Vec<[Vec<u32>; 2]> {
     let (scene, center) = floor();
     let lights = [lamps(squares, center), round_lamps(rounds, center + DVec3::X * 0.3)].concat();
-    with_view(engine, &scene, &lights, |renderer| {
+    with_renderer(engine, &black(&scene), &lights, SIZE, |renderer| {
         let options = ShadeOptions { surfaces: scene.effects(), ..ShadeOptions::default() };
         let view = renderer.tiled(options, tiles).unwrap();
         renderer.shade_tiled(&view).unwrap();
@@ -395,7 +373,7 @@ fn options_out_of_range_and_missing_buffers_are_refused() {
     let names = |pass: &ShadePass| pass.accesses().iter().map(|access| access.name).collect::<Vec<_>>();
     assert!(names(&pass).contains(&"lobe_horizons") && !names(&plain).contains(&"lobe_horizons"));
     let (scene, _) = floor();
-    with_view(&engine, &scene, &scene.lights, |renderer| {
+    with_renderer(&engine, &black(&scene), &scene.lights, SIZE, |renderer| {
         let view = renderer.tiled(ShadeOptions::default(), every_frame()).unwrap();
         let (resources, frame) = renderer.tiled_run(&view);
         let none = vk::DescriptorSet::null();
