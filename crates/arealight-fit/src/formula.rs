@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use crate::brdf::{Brdf, Magnitude};
 use crate::error::FitError;
 use crate::fit::node_of;
-use crate::linear::{LeastSquares, cholesky};
+use crate::linear::{LeastSquares, cholesky, six_digits};
 use crate::lobe::Lobe;
 use crate::nodes::Texel;
 use crate::solve::Problem;
@@ -234,9 +234,4 @@ fn cubic_monomials(x: f64, y: f64) -> [f64; 10] {
 
 fn quadratic_monomials(x: f64, y: f64) -> [f64; 6] {
     [1.0, y, y * y, x, x * y, x * x]
-}
-
-/// Rounds to six significant digits: what is printed is what was measured.
-fn six_digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
 }

@@ -36,6 +36,9 @@
 //! # Without a table
 //! [`formula`] fits polynomials to a table's entries, for those who have no sampler to spare.
 //!
+//! # In a medium
+//! [`phase`] fits what stands for Henyey and Greenstein's phase function.
+//!
 //! # The same everywhere
 //! The table does not depend on the number of threads, and all random numbers are fixed. Between machines
 //! only the last bits of the system's sines, logarithms and powers can differ.
@@ -52,6 +55,7 @@ mod linear;
 pub mod lobe;
 mod nodes;
 mod pairs;
+pub mod phase;
 mod probes;
 mod quadrature;
 mod random;

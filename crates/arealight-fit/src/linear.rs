@@ -139,3 +139,8 @@ mod tests {
         assert_eq!(LeastSquares::new(2).solve(), [0.0, 0.0]);
     }
 }
+
+/// Rounds to six significant digits: what is printed is what was measured.
+pub fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}

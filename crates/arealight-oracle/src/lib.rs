@@ -36,6 +36,7 @@
 //! | [`ggx`] | the GGX lobe: evaluation, sampling, density |
 //! | [`thin_film`] | iridescent films, and the Schlick term that stands for them |
 //! | [`sheen`] | the Charlie lobe of sheen, and the transformed cosine that stands for it |
+//! | [`phase`] | Henyey and Greenstein's phase function, and the lobes that stand for it |
 //! | [`ltsd`] | linearly transformed spherical distributions in general |
 //! | [`polygon`] | the clamped cosine, and its linear transforms, integrated over a polygon in closed form |
 //! | [`ellipse`] | the clamped cosine over an ellipse, which is a disk light, in closed form and by quadrature |
@@ -57,6 +58,7 @@ pub mod ggx;
 pub mod ltsd;
 pub mod material;
 pub mod microsurface;
+pub mod phase;
 pub mod polygon;
 pub mod shading;
 pub mod sheen;

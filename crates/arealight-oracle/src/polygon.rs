@@ -90,6 +90,22 @@ pub fn emitted(signed: f64, two_sided: bool) -> f64 {
     if two_sided { signed.abs() } else { signed.max(0.0) }
 }
 
+/// The solid angle that a planar polygon covers, positive if its front faces the origin: in [-2 pi, 2 pi]. 0
+/// where a vertex is not finite. Source: Van Oosterom and Strackee 1983, a triangle of a fan each.
+pub fn solid_angle(vertices: &[DVec3]) -> f64 {
+    let Some((&first, rest)) = vertices.split_first() else { return 0.0 };
+    let of_triangle = |[a, b, c]: [DVec3; 3]| {
+        let volume = -a.dot((b - a).cross(c - a));
+        let [x, y, z] = [a.length(), b.length(), c.length()];
+        2.0 * volume.atan2(x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y)
+    };
+    let largest = vertices.iter().fold(0.0_f64, |m, v| m.max(v.abs().max_element()));
+    let scale = power_of_two_near(1.0 / largest);
+    let sum: f64 =
+        rest.windows(2).map(|pair| of_triangle([first, pair[0], pair[1]].map(|v| v * scale))).sum();
+    if sum.is_finite() { sum } else { 0.0 }
+}
+
 /// Clips a polygon at `z + height = 0` and keeps what is above. A concave polygon may come out with edges
 /// that run back over each other along the horizon: their terms cancel.
 fn clip(points: &[DVec3], height: f64) -> Vec<DVec3> {

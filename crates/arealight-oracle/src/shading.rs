@@ -6,6 +6,7 @@ mod coat;
 mod diffuse;
 pub mod footprint;
 mod half_vectors;
+mod medium;
 pub mod poses;
 mod profiled;
 mod rescattered;
@@ -14,6 +15,7 @@ mod sheen;
 mod shown;
 mod textured;
 
+pub use medium::{in_scattered, in_scattered_truth, shape_in_scattered, shape_in_scattered_truth};
 pub use shapes::{shape_ltc_on, shape_seen_from, shape_truth, textured_ellipse};
 pub use shown::ShownImage;
 pub use textured::transformed_image_integral;

@@ -26,6 +26,7 @@
 //   form_factor/*              arcs, quads, outlines, ellipses, spheres, tubes in any linear space
 //   lights/*                   a file per kind of light
 //   light_kind.glsl            the loop over lobes
+//   medium.glsl                a point in fog, smoke or haze: lobes/phase.glsl
 //   textures/*                 what a lobe sees of a light's image
 // Included by themselves:
 //   shadows/*                  rays drawn from the lobes, for hosts that trace: shadow_sampling.glsl

@@ -2,6 +2,11 @@
 #define AREALIGHT_LIGHT_KIND_GLSL
 
 #include "arealight/material.glsl"
+#if AREALIGHT_MEDIA
+#include "arealight/medium.glsl"
+#else
+#define AREALIGHT_IN_MEDIA(Light, Local)
+#endif
 
 // The sum of a light over lobes. A kind of light is a record with `radiance`, a type for it in the shading
 // frame of a point, and functions:
@@ -17,10 +22,13 @@
 //     bool arealight_has_facet_form_factor(Local local);
 //     // The colour of its image averaged over a lobe, 1 without: what the radiance is multiplied with
 //     vec3 arealight_image_average(mat3 space, Local local, vec3 vector);
+//     // Its solid angle, in [0, 4 pi] for any bits, of what shines there (with AREALIGHT_SOLID_ANGLES)
+//     float arealight_solid_angle(Local local);
 //
 // AREALIGHT_LIGHT_KIND(Light, Local, EACH_LOBE), the last line of its file, makes of them arealight_reflected
-// and arealight_radiance. EACH_LOBE is AREALIGHT_UNROLLED_LOBES, or for kinds whose form factor is a loop
-// AREALIGHT_LOOPED_LOBES, where one after the other costs compilers less than both at once.
+// and arealight_radiance, and with AREALIGHT_MEDIA arealight_in_scattered (medium.glsl). EACH_LOBE is
+// AREALIGHT_UNROLLED_LOBES, or for kinds whose form factor is a loop AREALIGHT_LOOPED_LOBES, where one after
+// the other costs compilers less than both at once.
 
 // What a surface reflects of a light of unit radiance towards the viewer, per channel.
 struct ArealightReflected {
@@ -90,6 +98,7 @@ struct ArealightReflected {
     vec3 arealight_radiance(ArealightPoint point, Light light) {                                    \
         ArealightReflected reflected = arealight_reflected(point, light);                           \
         return light.radiance * (reflected.diffuse + reflected.specular);                           \
-    }
+    }                                                                                               \
+    AREALIGHT_IN_MEDIA(Light, Local)
 
 #endif

@@ -112,6 +112,15 @@
 #define AREALIGHT_LIGHT_TEXTURES 0
 #endif
 
+// Points in a medium, by Henyey and Greenstein's phase function: medium.glsl.
+#ifndef AREALIGHT_MEDIA
+#define AREALIGHT_MEDIA 0
+#endif
+// Lights say their solid angles, which those need.
+#ifndef AREALIGHT_SOLID_ANGLES
+#define AREALIGHT_SOLID_ANGLES AREALIGHT_MEDIA
+#endif
+
 // The kinds of lights that arealight.glsl includes.
 #ifndef AREALIGHT_QUADS
 #define AREALIGHT_QUADS 1

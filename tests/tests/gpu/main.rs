@@ -18,6 +18,7 @@ mod coupled;
 mod cpp_host;
 mod descriptors;
 mod effects;
+mod fog;
 mod footprints;
 mod frame;
 mod frames_in_flight;

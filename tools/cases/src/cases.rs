@@ -58,7 +58,7 @@ pub struct Case {
     pub name: String,
     /// Position of the shading point.
     pub position: DVec3,
-    /// Surface normal, not zero, of any length.
+    /// Surface normal, not zero, of any length; in a medium, which has none, where light goes on to.
     pub normal: DVec3,
     /// Direction that `alpha_x` runs along, once projected onto the surface.
     pub tangent: Option<DVec3>,
@@ -187,6 +187,21 @@ pub struct ShapeCase {
     pub image: Option<Arc<Texture>>,
 }
 
+/// As [`SupportedCase`], in a medium and with a light of any kind.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MediumCase {
+    /// The case's name.
+    pub name: String,
+    /// Henyey and Greenstein's g.
+    pub anisotropy: f64,
+    /// Direction to the viewer, not zero, of any length.
+    pub view: DVec3,
+    /// The light, relative to the point; the layer of its image is 0.
+    pub light: Light,
+    /// The image that it shows.
+    pub image: Option<Arc<Texture>>,
+}
+
 /// A case is well-formed, but asks for what is not there yet.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{reason}")]
@@ -219,13 +234,18 @@ pub fn read_cases(text: &str) -> Result<Vec<Case>, CaseError> {
 fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError> {
     let fields = Fields::of_case(index, value)?;
     let light_fields = fields.object("light")?;
+    let material = CaseMaterial::read(&fields)?;
+    let view = fields.direction("view")?;
     let case = Case {
         name: fields.name().to_owned(),
         position: fields.vector("position")?,
-        normal: fields.direction("normal")?,
+        normal: match material {
+            CaseMaterial::Medium { .. } => -view,
+            _ => fields.direction("normal")?,
+        },
         tangent: fields.optional("tangent", Fields::direction)?,
-        view: fields.direction("view")?,
-        material: CaseMaterial::read(&fields)?,
+        view,
+        material,
         light: read_light(&light_fields)?,
         blockers: fields
             .optional("occluders", |f, field| f.list(field, Fields::triangle_at))?
@@ -365,44 +385,12 @@ impl Case {
     /// [`Unsupported`] with the reason, in words.
     pub fn supported_shape(
         &self,
-        mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
+        load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
     ) -> Result<ShapeCase, Unsupported> {
-        self.check_fields()?;
-        if !self.blockers.is_empty() {
-            let reason = "occluders: before a light that is no polygon".into();
-            return Err(Unsupported { reason });
+        if matches!(self.light.shape, CaseShape::Polygon { .. }) {
+            return Err(Unsupported { reason: "the light is a polygon".into() });
         }
-        let shape = match self.light.shape {
-            CaseShape::Polygon { .. } => return Err(Unsupported { reason: "the light is a polygon".into() }),
-            CaseShape::Disk { center, axis_u, axis_v, .. } => {
-                LightShape::Disk { center: center - self.position, axis_u, axis_v }
-            }
-            CaseShape::Sphere { center, radius } => {
-                LightShape::Sphere { center: center - self.position, radius }
-            }
-            CaseShape::Cylinder { p0, p1, radius, caps } => {
-                let (p0, p1) = (p0 - self.position, p1 - self.position);
-                // It emits outwards, whatever is said of its sides
-                let ends = if caps { TubeEnds::Flat } else { TubeEnds::Open };
-                LightShape::Tube { p0, p1, radius, ends }
-            }
-        };
-        let image = match &self.light.shape {
-            CaseShape::Disk { texture: Some(path), .. } => {
-                let reason = |reason| Unsupported { reason: format!("light.texture: {path}: {reason}") };
-                Some(load(path).map_err(reason)?)
-            }
-            _ => None,
-        };
-        let light = Light {
-            name: self.name.clone(),
-            radiance: self.light.radiance.as_vec3(),
-            two_sided: self.light.two_sided,
-            texture: image.as_ref().map(|_| LightTexture { layer: 0, uvs: vec![] }),
-            profile: self.light.profile.clone(),
-            shape,
-        };
-        light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;
+        let (light, image) = self.unblocked_light(load)?;
         Ok(ShapeCase {
             name: self.name.clone(),
             surface: self.material.surface(self.tangent)?,
@@ -411,6 +399,72 @@ impl Case {
             light,
             image,
         })
+    }
+
+    /// The case as [`Case::supported`] has it, if its point is in a medium. `load` is as it is there.
+    ///
+    /// # Errors
+    /// [`Unsupported`] with the reason, in words.
+    pub fn supported_medium(
+        &self,
+        load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
+    ) -> Result<MediumCase, Unsupported> {
+        let CaseMaterial::Medium { anisotropy } = self.material else {
+            return Err(Unsupported { reason: "the point is on a surface".into() });
+        };
+        let (light, image) = self.unblocked_light(load)?;
+        Ok(MediumCase { name: self.name.clone(), anisotropy, view: self.view, light, image })
+    }
+
+    /// The light relative to the point, with its image.
+    fn unblocked_light(
+        &self,
+        mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
+    ) -> Result<(Light, Option<Arc<Texture>>), Unsupported> {
+        self.check_fields()?;
+        if !self.blockers.is_empty() {
+            let reason = "occluders: before a light that is no polygon, or in a medium".into();
+            return Err(Unsupported { reason });
+        }
+        let shape = match &self.light.shape {
+            CaseShape::Polygon { vertices, .. } => {
+                LightShape::Polygon(vertices.iter().map(|v| *v - self.position).collect())
+            }
+            &CaseShape::Disk { center, axis_u, axis_v, .. } => {
+                LightShape::Disk { center: center - self.position, axis_u, axis_v }
+            }
+            &CaseShape::Sphere { center, radius } => {
+                LightShape::Sphere { center: center - self.position, radius }
+            }
+            &CaseShape::Cylinder { p0, p1, radius, caps } => {
+                let (p0, p1) = (p0 - self.position, p1 - self.position);
+                // It emits outwards, whatever is said of its sides
+                let ends = if caps { TubeEnds::Flat } else { TubeEnds::Open };
+                LightShape::Tube { p0, p1, radius, ends }
+            }
+        };
+        let shown = match &self.light.shape {
+            CaseShape::Disk { texture: Some(path), .. } => Some((path, vec![])),
+            CaseShape::Polygon { texture: Some(CaseTexture { path, uv }), .. } => Some((path, uv.clone())),
+            _ => None,
+        };
+        let image = match &shown {
+            Some((path, _)) => {
+                let reason = |reason| Unsupported { reason: format!("light.texture: {path}: {reason}") };
+                Some(load(path).map_err(reason)?)
+            }
+            None => None,
+        };
+        let light = Light {
+            name: self.name.clone(),
+            radiance: self.light.radiance.as_vec3(),
+            two_sided: self.light.two_sided,
+            texture: shown.map(|(_, uvs)| LightTexture { layer: 0, uvs }),
+            profile: self.light.profile.clone(),
+            shape,
+        };
+        light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;
+        Ok((light, image))
     }
 
     fn check_fields(&self) -> Result<(), Unsupported> {

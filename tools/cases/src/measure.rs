@@ -13,7 +13,7 @@ pub struct Family {
     /// Whether the light has a texture.
     pub textured: bool,
     /// `diffuse`, `rough diffuse`, `ggx`, `ggx + diffuse`, `ggx over diffuse` where the two are coupled,
-    /// `anisotropic ggx`, `anisotropic ggx + diffuse` or `coat`.
+    /// `anisotropic ggx`, `anisotropic ggx + diffuse`, `coat` or `medium`.
     pub material: &'static str,
 }
 
@@ -31,6 +31,7 @@ impl Family {
             CaseMaterial::Ggx { coat: Some(_), .. } => "coat",
             CaseMaterial::Ggx { sheen: Some(_), .. } => "sheen_over",
             CaseMaterial::Sheen(_) => "sheen",
+            CaseMaterial::Medium { .. } => "medium",
             CaseMaterial::Ggx { albedo: Some(_), coupled: true, .. } => "ggx over diffuse",
             CaseMaterial::Ggx { alpha, albedo, .. } => match (alpha.x == alpha.y, albedo) {
                 (true, None) => "ggx",

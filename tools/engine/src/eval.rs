@@ -8,6 +8,7 @@ use arealight_oracle::thin_film::ThinFilm;
 use arealight_tool_kernels::gpu::{EvalConstants, GpuCase};
 use arealight_tool_kernels::plan;
 use arealight_vk::Resource;
+use bytemuck::Pod;
 use glam::{DVec3, Vec3};
 
 /// What polygons and meshes may need beyond a convex quad without a texture or a profile.
@@ -26,6 +27,18 @@ pub struct EvalPoint {
     pub view: DVec3,
     /// The light, in world positions.
     pub light: Light,
+}
+
+impl AsRef<Light> for EvalPoint {
+    fn as_ref(&self) -> &Light {
+        &self.light
+    }
+}
+
+impl AsMut<Light> for EvalPoint {
+    fn as_mut(&mut self) -> &mut Light {
+        &mut self.light
+    }
 }
 
 impl Engine {
@@ -70,11 +83,11 @@ impl Engine {
 
     /// The answers of an eval kernel to `cases`, with the resources that are bound beside the cases and the
     /// results.
-    pub(crate) fn dispatch_cases(
+    pub(crate) fn dispatch_cases<T: Pod>(
         &self,
         kernel: &'static Kernel,
         specialization: &[(u32, u32)],
-        cases: &[GpuCase],
+        cases: &[T],
         bound: impl Fn(Resource, Resource) -> Vec<Resource>,
     ) -> Result<Vec<Vec3>, EngineError> {
         // Each dispatch takes as many cases as the device has groups for
@@ -194,7 +207,7 @@ pub(crate) fn surface_case(surface: &Surface, normal: DVec3, view: DVec3, light:
 
 /// A direction of any length in float64, as a unit vector in float32, which has not the range for every
 /// length.
-fn rounded(direction: DVec3) -> [f32; 3] {
+pub(crate) fn rounded(direction: DVec3) -> [f32; 3] {
     let largest = direction.abs().max_element();
     let scaled = if largest > 0.0 && largest.is_finite() { direction / largest } else { direction };
     scaled.normalize_or_zero().as_vec3().to_array()

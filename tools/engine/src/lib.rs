@@ -9,6 +9,7 @@
 #![allow(clippy::missing_errors_doc, clippy::missing_panics_doc)] // what the types say
 
 mod eval;
+mod eval_medium;
 mod eval_shapes;
 mod g_buffer;
 
@@ -24,6 +25,7 @@ mod textures;
 pub use arealight_host as host;
 pub use arealight_host::{Host, HostError, HostOptions, Validation};
 pub use eval::{EvalPoint, gpu_case};
+pub use eval_medium::MediumPoint;
 pub use g_buffer::{GBuffer, texel_of};
 pub use kept::Kept;
 pub use passes::{BoundSet, ListPass, Passes, SharedPass};

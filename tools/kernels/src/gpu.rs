@@ -51,6 +51,16 @@ pub struct GpuLightSampling {
     pub reserved: [u32; 2],
 }
 
+/// One point in a medium of the eval kernel of those; its light is at the same index.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct GpuMediumCase {
+    /// Direction to the viewer, of any length.
+    pub view: [f32; 3],
+    /// Henyey and Greenstein's g.
+    pub anisotropy: f32,
+}
+
 /// One shading point of the eval kernel. Its light's center is relative to the point.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

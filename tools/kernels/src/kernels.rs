@@ -8,6 +8,9 @@ pub static EVAL: Kernel = Kernel::new("eval", include_bytes!("../spirv/eval.spv"
 /// As [`EVAL`], of disks, spheres and tubes. Push constants: [`crate::gpu::EvalConstants`].
 pub static EVAL_SHAPES: Kernel = Kernel::new("eval_shapes", include_bytes!("../spirv/eval_shapes.spv"));
 
+/// The library's lights over a list of points in a medium. Push constants: [`crate::gpu::EvalConstants`].
+pub static EVAL_MEDIUM: Kernel = Kernel::new("eval_medium", include_bytes!("../spirv/eval_medium.spv"));
+
 /// [`arealight::kernels::SHADE`] for whole frames, which is translated to other shading languages: its
 /// bindings have the same numbers, the constants of a frame are a uniform block, images are apart from their
 /// sampler, and radiance is not read. No device runs it as it is.
@@ -35,4 +38,4 @@ pub static SHADOW_RAYS_MASKED: Kernel =
     Kernel::new("shadow_rays", include_bytes!("../spirv/shadow_rays_masked.spv"));
 
 /// Every kernel of this crate that is bound by itself.
-pub static ALL: [&Kernel; 4] = [&EVAL, &EVAL_SHAPES, &REFERENCE, &VISIBILITY];
+pub static ALL: [&Kernel; 5] = [&EVAL, &EVAL_SHAPES, &EVAL_MEDIUM, &REFERENCE, &VISIBILITY];

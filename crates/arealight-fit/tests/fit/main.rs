@@ -4,4 +4,5 @@ mod albedo;
 mod built_in;
 mod formula;
 mod lobe;
+mod phase;
 mod table;

@@ -87,20 +87,7 @@ fn uncoated_truth(
     let frame = SurfaceFrame::new(normal, view);
     let seen = LocalShape::new(light, &frame)?;
     let radiance = light.radiance.as_dvec3();
-    let at = |count| {
-        let signed = reflected(surface, &frame, &seen.region(count), settings, |_| DVec3::ONE);
-        Truth { radiance: radiance * signed.radiance.abs(), error: radiance * signed.error, ..signed }
-    };
-    let [coarse, middle, fine] = [48, 96, 192].map(at);
-    // What an inscribed polygon lacks shrinks by four when its sides are halved, and what is left by sixteen
-    let first = middle.radiance + (middle.radiance - coarse.radiance) / 3.0;
-    let second = fine.radiance + (fine.radiance - middle.radiance) / 3.0;
-    let step = (second - first) / 15.0;
-    Some(Truth {
-        radiance: second + step,
-        error: fine.error + step.abs(),
-        evaluations: coarse.evaluations + middle.evaluations + fine.evaluations,
-    })
+    Some(seen.refined_truth(radiance, |region| reflected(surface, &frame, region, settings, |_| DVec3::ONE)))
 }
 
 /// The light with its disk, sphere or tube relative to a shading point, as [`shape_ltc_on`] and
@@ -122,7 +109,7 @@ pub fn shape_seen_from(light: &Light, point: DVec3) -> Light {
 }
 
 /// A shape in the surface's frame.
-enum LocalShape {
+pub(super) enum LocalShape {
     Ellipse { ellipse: Ellipse, two_sided: bool },
     Sphere { sphere: Sphere, two_sided: bool },
     Tube(Tube),
@@ -130,7 +117,7 @@ enum LocalShape {
 
 impl LocalShape {
     /// None for a polygon or mesh.
-    fn new(light: &Light, frame: &SurfaceFrame) -> Option<Self> {
+    pub(super) fn new(light: &Light, frame: &SurfaceFrame) -> Option<Self> {
         let two_sided = light.two_sided;
         Some(match light.shape {
             LightShape::Polygon(_) | LightShape::Mesh { .. } => return None,
@@ -153,21 +140,60 @@ impl LocalShape {
         })
     }
 
+    /// What is sent of a light of this radiance, `of` saying it of regions: of silhouettes as polygons of 48,
+    /// 96 and 192 sides a rim, whose lack is extrapolated away.
+    pub(super) fn refined_truth(&self, radiance: DVec3, of: impl Fn(&Region) -> Truth) -> Truth {
+        let at = |count| {
+            let signed = of(&self.region(count));
+            Truth { radiance: radiance * signed.radiance.abs(), error: radiance * signed.error, ..signed }
+        };
+        let truths = [48, 96, 192].map(at);
+        let (value, step) = refined(truths.map(|truth| truth.radiance));
+        Truth {
+            radiance: value,
+            error: truths[2].error + step.abs(),
+            evaluations: truths.iter().map(|truth| truth.evaluations).sum(),
+        }
+    }
+
+    /// The solid angle that it covers where it shines to the point, in [0, 4 pi]. Error 1e-9 where the point
+    /// is not nearer than a tenth of the radius.
+    pub(super) fn solid_angle(&self) -> f64 {
+        match self {
+            Self::Sphere { sphere, two_sided } if sphere.is_inside() => {
+                if *two_sided {
+                    2.0 * TAU
+                } else {
+                    0.0
+                }
+            }
+            _ => {
+                let at = |count| DVec3::splat(polygon::solid_angle(&self.outline(count)).abs());
+                refined([100, 200, 400].map(at)).0.x
+            }
+        }
+    }
+
     /// The directions that it covers where it shines to the point, by a polygon of `count` sides a rim.
     fn region(&self, count: usize) -> Region {
-        let outline = match self {
+        match self {
+            Self::Sphere { sphere, two_sided: true } if sphere.is_inside() => Region::sphere(),
+            _ => Region::polygon(&self.outline(count)),
+        }
+    }
+
+    /// The outline of what shines to the point from outside of it, by a polygon of `count` sides a rim.
+    fn outline(&self, count: usize) -> Vec<DVec3> {
+        match self {
             Self::Ellipse { ellipse, two_sided } if *two_sided || ellipse.shows_front() => {
                 ellipse.polygon(count)
             }
             Self::Ellipse { .. } => Vec::new(),
-            Self::Sphere { sphere, two_sided } => match sphere.silhouette() {
-                Some(disk) => disk.polygon(count),
-                None if *two_sided => return Region::sphere(),
-                None => Vec::new(),
-            },
+            Self::Sphere { sphere, .. } => {
+                sphere.silhouette().map_or_else(Vec::new, |disk| disk.polygon(count))
+            }
             Self::Tube(tube) => tube.outline(count),
-        };
-        Region::polygon(&outline)
+        }
     }
 
     /// The form factor in the Lambert lobe's space.
@@ -179,7 +205,7 @@ impl LocalShape {
     }
 
     /// The form factor in a lobe's cosine space, whose horizon alone clips.
-    fn form_factor(&self, inverse: &DMat3) -> f64 {
+    pub(super) fn form_factor(&self, inverse: &DMat3) -> f64 {
         match self {
             Self::Ellipse { ellipse, two_sided } => {
                 // A transform that mirrors turns front to back
@@ -211,6 +237,15 @@ impl LocalShape {
             }
         }
     }
+}
+
+/// What values of inscribed polygons whose sides are halved twice tend to, and the last step there: what such
+/// a polygon lacks shrinks by four when its sides are halved, and what is left by sixteen.
+fn refined([coarse, middle, fine]: [DVec3; 3]) -> (DVec3, DVec3) {
+    let first = middle + (middle - coarse) / 3.0;
+    let second = fine + (fine - middle) / 3.0;
+    let step = (second - first) / 15.0;
+    (second + step, step)
 }
 
 /// A polygon of `count` sides that has the area of an ellipse.

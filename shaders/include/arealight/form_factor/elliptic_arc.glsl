@@ -123,6 +123,34 @@ vec3 arealight_elliptic_arc(ArealightCone cone, ArealightArcSpan arc) {
     return integral;
 }
 
+// The solid angle of a whole ellipse, of either side: in [0, 2 pi]. With the cone's half axes A and B at a
+// distance of 1 it is the integral over a quarter turn of
+//
+//     4 A B / (S + S^2),    S^2 = 1 + A^2 cos^2 + B^2 sin^2,
+//
+// a complete elliptic integral of the third kind without its cancellation. Stretched so that its two scales
+// are as far from 1, by midpoints: error 1e-6 of it where A < 20 (1 + B), 2e-4 where it is a line.
+float arealight_ellipse_solid_angle(vec3 center, vec3 axis_u, vec3 axis_v) {
+    const int COUNT = 8;
+    ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
+    ArealightCone cone = arealight_ellipse_cone(ellipse, arealight_confocal_root(ellipse));
+    float p = cone.c * cone.c + cone.a * cone.a;
+    float q = cone.c * cone.c + cone.b * cone.b;
+    float ratio = max(sqrt(q / p), 1e-12);
+    // cos^2 of the midpoint, from one to the next by a rotation of an eighth of a half turn
+    vec2 turn = vec2(0.980785280, 0.195090322);
+    float sum = 0.0;
+    for (int i = 0; i < COUNT; i++) {
+        float cosine = 0.5 + 0.5 * turn.x;
+        float sine = 0.5 - 0.5 * turn.x;
+        float above = p * (cosine + ratio * sine);
+        sum += 1.0 / (above + cone.c * sqrt(above * (cosine + sine / ratio)));
+        turn = vec2(turn.x * 0.923879533 - turn.y * 0.382683432, turn.x * 0.382683432 + turn.y * 0.923879533);
+    }
+    float covered = cone.a * cone.b * inversesqrt(ratio) * sum / float(COUNT);
+    return 2.0 * AREALIGHT_PI * arealight_guarded_form_factor(covered, ellipse.square);
+}
+
 // The contour of the part of a cone above the horizon of a unit `normal`, given in the cone's frame:
 // arealight_elliptic_arc of its outline, and what closes it along the horizon, a vector along the normal of
 // the length w. The cone must cross the horizon.

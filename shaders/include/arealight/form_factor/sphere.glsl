@@ -46,6 +46,18 @@ float arealight_sphere_form_factor(vec3 center, float radius, bool two_sided) {
     return arealight_guarded_form_factor(form_factor, square + radius * radius);
 }
 
+// The solid angle of a sphere seen from outside, in [0, 2 pi]; relative error 1e-6.
+float arealight_sphere_solid_angle(vec3 center, float radius) {
+    float scale = arealight_power_of_two_scale(max(arealight_max_component(center), radius));
+    center *= scale;
+    radius *= scale;
+    float square = max(dot(center, center), AREALIGHT_TINY);
+    float distance = sqrt(square);
+    float cosine = sqrt(max((distance - radius) * (distance + radius), 0.0)) / distance;
+    float covered = radius * radius / (square * (1.0 + cosine));
+    return 2.0 * AREALIGHT_PI * arealight_guarded_form_factor(covered, square + radius * radius);
+}
+
 // Two unit vectors with axis = x x y, for a unit axis. Source: Duff et al. 2017.
 void arealight_perpendiculars(vec3 axis, out vec3 x, out vec3 y) {
     float side = axis.z < 0.0 ? -1.0 : 1.0;

@@ -77,6 +77,12 @@ vec3 arealight_image_average(mat3 space, ArealightLocalDisk local, vec3 vector) 
     return vec3(1.0);
 }
 
+#if AREALIGHT_SOLID_ANGLES
+float arealight_solid_angle(ArealightLocalDisk local) {
+    return arealight_ellipse_solid_angle(local.center, local.axis_u, local.axis_v);
+}
+#endif
+
 AREALIGHT_WITHOUT_HALF_VECTORS(ArealightLocalDisk)
 AREALIGHT_LIGHT_KIND(ArealightDiskLight, ArealightLocalDisk, AREALIGHT_UNROLLED_LOBES)
 

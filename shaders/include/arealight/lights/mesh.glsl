@@ -91,6 +91,21 @@ vec3 arealight_image_average(mat3 space, ArealightLocalMesh local, vec3 vector) 
     return vec3(1.0);
 }
 
+#if AREALIGHT_SOLID_ANGLES
+float arealight_solid_angle(ArealightLocalMesh local) {
+    vec3 center = local.to_frame * local.offset;
+    float sum = 0.0;
+    for (uint row = local.first; row + 1u < local.end;) {
+        ArealightMeshFace face = arealight_mesh_face(local, row);
+        if (face.side != 0.0) {
+            sum += arealight_outline_solid_angle(center, local.to_frame, face.first, face.end);
+        }
+        row = face.end;
+    }
+    return min(sum, 4.0 * AREALIGHT_PI);
+}
+#endif
+
 AREALIGHT_LIGHT_KIND(ArealightMeshLight, ArealightLocalMesh, AREALIGHT_LOOPED_LOBES)
 
 #endif

@@ -266,6 +266,28 @@ vec3 arealight_image_average(mat3 space, ArealightLocalPolygon local, vec3 vecto
     return vec3(1.0);
 }
 
+#if AREALIGHT_SOLID_ANGLES
+// The solid angle of the outline of vertices `first` to `end` - 1, not empty, as a fan about the first.
+float arealight_outline_solid_angle(vec3 center, mat3 to_frame, uint first, uint end) {
+    vec3 origin = arealight_bridge_vertex(first);
+    center += to_frame * origin;
+    vec3 apex = arealight_unit(center);
+    ArealightFanVertex from = arealight_fan_vertex(center, vec3(0.0));
+    vec2 turn = vec2(1.0, 0.0);
+    for (uint index = first + 1u; index < end; index++) {
+        vec3 offset = to_frame * (arealight_bridge_vertex(index) - origin);
+        ArealightFanVertex to = arealight_fan_vertex(center + offset, offset);
+        turn = arealight_fan_turned(turn, apex, from, to);
+        from = to;
+    }
+    return arealight_fan_solid_angle(turn);
+}
+
+float arealight_solid_angle(ArealightLocalPolygon local) {
+    return arealight_outline_solid_angle(local.center, local.to_frame, local.first, local.end);
+}
+#endif
+
 AREALIGHT_LIGHT_KIND(ArealightPolygonLight, ArealightLocalPolygon, AREALIGHT_LOOPED_LOBES)
 
 #endif

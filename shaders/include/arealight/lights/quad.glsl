@@ -3,6 +3,9 @@
 
 #include "arealight/form_factor/difference.glsl"
 #include "arealight/form_factor/quad.glsl"
+#if AREALIGHT_SOLID_ANGLES
+#include "arealight/form_factor/solid_angle.glsl"
+#endif
 #include "arealight/light_kind.glsl"
 
 // A convex, flat quad of constant radiance (a triangle has a vertex twice), counter-clockwise seen from its
@@ -119,6 +122,13 @@ vec3 arealight_facet_form_factor(ArealightFacets facets, ArealightLocalQuad loca
 vec3 arealight_image_average(mat3 space, ArealightLocalQuad local, vec3 vector) {
     return vec3(1.0);
 }
+
+#if AREALIGHT_SOLID_ANGLES
+float arealight_solid_angle(ArealightLocalQuad local) {
+    return arealight_quad_solid_angle(arealight_moved(local.quad, AREALIGHT_USES_DIFFERENCE ? local.center
+                                                                                            : vec3(0.0)));
+}
+#endif
 
 AREALIGHT_LIGHT_KIND(ArealightQuadLight, ArealightLocalQuad, AREALIGHT_UNROLLED_LOBES)
 

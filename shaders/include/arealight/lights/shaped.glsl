@@ -216,6 +216,15 @@ vec3 arealight_image_average(mat3 space, ArealightLocalShaped local, vec3 vector
     return arealight_image_average(space, local.polygon, vector);
 }
 
+#if AREALIGHT_SOLID_ANGLES
+// Times the profile's mean from its nearest place to its farthest.
+float arealight_solid_angle(ArealightLocalShaped local) {
+    float width = local.high.x - local.low.x;
+    float mean = width > 1e-3 ? (local.high.z - local.low.z) / width : 0.5 * (local.low.y + local.high.y);
+    return mean * arealight_solid_angle(local.polygon);
+}
+#endif
+
 AREALIGHT_WITHOUT_HALF_VECTORS(ArealightLocalShaped)
 AREALIGHT_LIGHT_KIND(ArealightShapedLight, ArealightLocalShaped, AREALIGHT_LOOPED_LOBES)
 

@@ -52,6 +52,13 @@ vec3 arealight_image_average(mat3 space, ArealightLocalSphere local, vec3 vector
     return vec3(1.0);
 }
 
+#if AREALIGHT_SOLID_ANGLES
+float arealight_solid_angle(ArealightLocalSphere local) {
+    return local.silhouette.inside ? 4.0 * AREALIGHT_PI
+        : arealight_sphere_solid_angle(local.center, local.radius);
+}
+#endif
+
 AREALIGHT_WITHOUT_HALF_VECTORS(ArealightLocalSphere)
 AREALIGHT_LIGHT_KIND(ArealightSphereLight, ArealightLocalSphere, AREALIGHT_UNROLLED_LOBES)
 

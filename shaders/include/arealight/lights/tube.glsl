@@ -2,6 +2,9 @@
 #define AREALIGHT_TUBE_LIGHT_GLSL
 
 #include "arealight/form_factor/tube_horizons.glsl"
+#if AREALIGHT_SOLID_ANGLES
+#include "arealight/form_factor/tube_solid_angle.glsl"
+#endif
 #include "arealight/light_kind.glsl"
 
 // A cylinder or capsule of constant radiance, which shines outwards.
@@ -31,6 +34,12 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightTube local) {
 vec3 arealight_image_average(mat3 space, ArealightTube local, vec3 vector) {
     return vec3(1.0);
 }
+
+#if AREALIGHT_SOLID_ANGLES
+float arealight_solid_angle(ArealightTube local) {
+    return arealight_tube_solid_angle(local);
+}
+#endif
 
 AREALIGHT_WITHOUT_HALF_VECTORS(ArealightTube)
 AREALIGHT_LIGHT_KIND(ArealightTubeLight, ArealightTube, AREALIGHT_UNROLLED_LOBES)

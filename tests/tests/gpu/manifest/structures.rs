@@ -312,6 +312,7 @@ fn array_strides_are_the_sizes_in_rust() {
         (&tool::kernels::EVAL, "cases", size_of::<tool::gpu::GpuCase>()),
         (&tool::kernels::EVAL_SHAPES, "cases", size_of::<tool::gpu::GpuCase>()),
         (&tool::kernels::EVAL_SHAPES, "shapes", size_of::<gpu::GpuShape>()),
+        (&tool::kernels::EVAL_MEDIUM, "cases", size_of::<tool::gpu::GpuMediumCase>()),
         (&kernels::SHADE, "shapes", size_of::<gpu::GpuShape>()),
         (&tool::kernels::REFERENCE, "light_sampling", size_of::<tool::gpu::GpuLightSampling>()),
         (&tool::kernels::REFERENCE, "light_triangles", size_of::<tool::gpu::GpuLightTriangle>()),

@@ -4,13 +4,17 @@ use crate::failure::Failure;
 use crate::output::{self, print, say_beside};
 use crate::quality::{self, QualityArguments};
 use crate::{gpu, memory, progress, visible};
+use arealight::LightShape;
 use arealight_cases::answers::{Answer, read_answers, write_answers};
-use arealight_cases::cases::{Case, CaseError, CaseShape, ShapeCase, SupportedCase, read_cases};
+use arealight_cases::cases::{
+    Case, CaseError, CaseMaterial, CaseShape, MediumCase, ShapeCase, SupportedCase, read_cases,
+};
 use arealight_cases::images::Images;
 use arealight_cases::measure::{Measure, UnknownTruth, measure};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::{
-    RelativeLight, Truth, ltc_on, shape_ltc_on, shape_truth, textured_ellipse, truth,
+    RelativeLight, Truth, in_scattered, in_scattered_truth, ltc_on, shape_in_scattered,
+    shape_in_scattered_truth, shape_ltc_on, shape_truth, textured_ellipse, truth,
 };
 use arealight_oracle::texture::Texture;
 use glam::DVec3;
@@ -180,6 +184,7 @@ fn complaint(measures: &[Measure], tolerance: f64) -> Option<String> {
 enum Supported {
     Polygon(SupportedCase),
     Shape(ShapeCase),
+    Medium(MediumCase),
 }
 
 impl Supported {
@@ -190,6 +195,10 @@ impl Supported {
     fn shape(&self) -> Option<&ShapeCase> {
         if let Self::Shape(case) = self { Some(case) } else { None }
     }
+
+    fn medium(&self) -> Option<&MediumCase> {
+        if let Self::Medium(case) = self { Some(case) } else { None }
+    }
 }
 
 /// What a case is, or why it cannot be answered.
@@ -197,6 +206,9 @@ fn supported(
     case: &Case,
     load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
 ) -> Result<Supported, String> {
+    if matches!(case.material, CaseMaterial::Medium { .. }) {
+        return case.supported_medium(load).map(Supported::Medium).map_err(|error| error.to_string());
+    }
     if matches!(case.light.shape, CaseShape::Polygon { .. }) {
         return case.supported(load).map(Supported::Polygon).map_err(|error| error.to_string());
     }
@@ -216,13 +228,15 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     let counts: Vec<usize> = parts.iter().map(Vec::len).collect();
     let polygons: Vec<SupportedCase> = parts.into_iter().flatten().collect();
     let shapes: Vec<ShapeCase> = known().filter_map(Supported::shape).cloned().collect();
+    let media: Vec<MediumCase> = known().filter_map(Supported::medium).cloned().collect();
     let quality = arguments.quality.quality();
-    let (of_polygons, of_shapes) = match arguments.on {
+    let (of_polygons, of_shapes, of_media) = match arguments.on {
         Method::Gpu => {
             let table = arguments.quality.table()?;
             let mut engine = gpu::LazyEngine::new(arguments.device.device.as_deref(), &table);
             let polygons = gpu::eval::answer(&polygons, quality, &mut engine, &arguments.cases)?;
-            (polygons, gpu::eval_shapes::answer(&shapes, quality, &mut engine, &arguments.cases)?)
+            let shapes = gpu::eval_shapes::answer(&shapes, quality, &mut engine, &arguments.cases)?;
+            (polygons, shapes, gpu::eval_medium::answer(&media, quality, &mut engine, &arguments.cases)?)
         }
         Method::Oracle => {
             let table = arguments.quality.table()?;
@@ -238,7 +252,16 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
                 };
                 radiance.map_or_else(|| no_shape(name), |radiance| Answer::new(name, radiance))
             });
-            (polygons, shapes)
+            let media = answer_in_parallel(&media, |case| {
+                let MediumCase { name, anisotropy, view, light, .. } = case;
+                let radiance = match relative(case) {
+                    Ok(light) => Some(in_scattered(*anisotropy, *view, &light)),
+                    Err(None) => shape_in_scattered(*anisotropy, *view, light),
+                    Err(Some(reason)) => return Answer::none(name, reason),
+                };
+                radiance.map_or_else(|| no_shape(name), |radiance| Answer::new(name, radiance))
+            });
+            (polygons, shapes, media)
         }
         Method::Truth => {
             let settings = Settings::default();
@@ -254,16 +277,27 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
                 };
                 found.map_or_else(|| no_shape(name), |found| answer_by_cubature(name, found))
             });
-            (polygons, shapes)
+            let media = answer_in_parallel(&media, |case| {
+                let MediumCase { name, anisotropy, view, light, .. } = case;
+                let found = match relative(case) {
+                    Ok(light) => Some(in_scattered_truth(*anisotropy, *view, &light, &settings)),
+                    Err(None) => shape_in_scattered_truth(*anisotropy, *view, light, &settings),
+                    Err(Some(reason)) => return Answer::none(name, reason),
+                };
+                found.map_or_else(|| no_shape(name), |found| answer_by_cubature(name, found))
+            });
+            (polygons, shapes, media)
         }
     };
     let of_polygons = visible::sums(&whole, &counts, of_polygons);
     // Put the reasons in between
     let (mut of_polygons, mut of_shapes) = (of_polygons.into_iter(), of_shapes.into_iter());
+    let mut of_media = of_media.into_iter();
     let answer = |(case, sorted): (&Case, &Result<Supported, String>)| {
         let answer = match sorted {
             Ok(Supported::Polygon(_)) => of_polygons.next(),
             Ok(Supported::Shape(_)) => of_shapes.next(),
+            Ok(Supported::Medium(_)) => of_media.next(),
             Err(reason) => Some(Answer::none(&case.name, reason.clone())),
         };
         answer.unwrap_or_else(|| Answer::none(&case.name, "no answer was given"))
@@ -279,6 +313,19 @@ fn no_shape(name: &str) -> Answer {
 /// The light of a textured case, as the polygon that stands for it.
 fn textured(case: &ShapeCase) -> Option<RelativeLight> {
     textured_ellipse(&case.light, Arc::clone(case.image.as_ref()?))
+}
+
+/// The light of a case in a medium, if it is a polygon or one stands for it; else why not, where it may not
+/// be a shape either.
+fn relative(case: &MediumCase) -> Result<RelativeLight, Option<String>> {
+    let polygon = matches!(case.light.shape, LightShape::Polygon(_));
+    match &case.image {
+        None if polygon => Ok(RelativeLight::new(&case.light, DVec3::ZERO)),
+        None => Err(None),
+        Some(image) if polygon => RelativeLight::textured(&case.light, DVec3::ZERO, Arc::clone(image))
+            .map_err(|error| Some(error.to_string())),
+        Some(image) => textured_ellipse(&case.light, Arc::clone(image)).ok_or(None),
+    }
 }
 
 /// Above this share of the radiance a cubature's error estimate makes it no truth. It is reached only where

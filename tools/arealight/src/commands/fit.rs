@@ -7,7 +7,7 @@ use arealight::{Horizon, LightTable, SpecularLobes, TableSample};
 use arealight_fit::report::{
     COUNT, Case, Errors, Level, METALS, PUBLISHED, SEED, cases, measure_lookup, measure_lookup_colour,
 };
-use arealight_fit::{Aim, FitError, GgxBrdf, Settings, formula};
+use arealight_fit::{Aim, FitError, GgxBrdf, Settings, formula, phase};
 use arealight_oracle::formula::Formula;
 use arealight_table::{TableFile, Target};
 use serde_json::{Value, json};
@@ -36,6 +36,10 @@ pub struct Arguments {
     /// Fit a formula to the table as well, and print its coefficients as Rust and GLSL.
     #[arg(long)]
     formula: bool,
+    /// Fit no table, but the lobes of Henyey and Greenstein's phase function; print their coefficients as
+    /// Rust and GLSL, and their errors.
+    #[arg(long, conflicts_with_all = ["output", "formula", "report", "no_pairs", "json"])]
+    phase: bool,
     /// Compare the table, and the published one, with the true BRDF on 3000 random quads.
     #[arg(long)]
     report: bool,
@@ -45,6 +49,9 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    if arguments.phase {
+        return print(&phase_text());
+    }
     let format = |path: &Path| {
         Target::of_path(path, None)
             .map_err(|error| Failure::Argument { argument: "--output", message: error.to_string() })
@@ -72,6 +79,16 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let report = arguments.report.then(|| Report::of(&table, formula.as_ref()));
     let summary = Summary { arguments, table: &table, seconds, formula, report };
     print(&if arguments.json { summary.to_json() } else { summary.to_text() })
+}
+
+/// The phase function's lobes, fitted.
+fn phase_text() -> String {
+    let fit = phase::fit();
+    let mut text = format!("{}\n{}\n  |g|  error over the sphere\n", phase::rust(&fit), phase::glsl(&fit));
+    for g in [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95] {
+        let _ = writeln!(text, "{g:>5}  {:.4}", phase::error(&fit, g));
+    }
+    text
 }
 
 /// The errors of a table, and of the formula that was fitted to it.
@@ -273,6 +290,7 @@ mod tests {
             no_pairs: false,
             matrices: 2,
             formula: true,
+            phase: false,
             report: true,
             json: true,
         }

@@ -87,18 +87,18 @@ impl Images {
     }
 
     /// The answers of points, in their order, an image at a time: none depends on the others.
-    pub fn answers(
+    pub fn answers<P: AsRef<Light> + AsMut<Light> + Clone>(
         &self,
         engine: &mut Engine,
-        points: &[EvalPoint],
-        answer: impl Fn(&Engine, &[EvalPoint]) -> Result<Vec<Vec3>, EngineError>,
+        points: &[P],
+        answer: impl Fn(&Engine, &[P]) -> Result<Vec<Vec3>, EngineError>,
     ) -> Result<Vec<Vec3>, EngineError> {
         let mut answers = vec![Vec3::ZERO; points.len()];
-        let layer = |point: &EvalPoint| point.light.texture.as_ref().map(|texture| texture.layer as usize);
+        let layer = |point: &P| point.as_ref().texture.as_ref().map(|texture| texture.layer as usize);
         for image in (0..self.known.len()).map(Some).chain([None]) {
             let indices: Vec<usize> = (0..points.len()).filter(|i| layer(&points[*i]) == image).collect();
-            let mut shown: Vec<EvalPoint> = indices.iter().map(|i| points[*i].clone()).collect();
-            for texture in shown.iter_mut().filter_map(|point| point.light.texture.as_mut()) {
+            let mut shown: Vec<P> = indices.iter().map(|i| points[*i].clone()).collect();
+            for texture in shown.iter_mut().filter_map(|point| point.as_mut().texture.as_mut()) {
                 texture.layer = 0;
             }
             let images: Vec<_> = image.map(|image| Arc::clone(&self.known[image])).into_iter().collect();

@@ -1,6 +1,7 @@
 //! The commands' way to a device.
 
 pub mod eval;
+pub mod eval_medium;
 pub mod eval_shapes;
 
 use crate::failure::Failure;

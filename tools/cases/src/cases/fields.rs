@@ -158,6 +158,11 @@ impl<'a> Fields<'a> {
         }
     }
 
+    /// A number.
+    pub fn number(&self, field: &str) -> Result<f64, CaseError> {
+        self.number_at(field, self.value(field)?)
+    }
+
     /// A number from 0 to 1.
     pub fn share(&self, field: &str) -> Result<f64, CaseError> {
         let share = self.number_at(field, self.value(field)?)?;

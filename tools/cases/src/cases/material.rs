@@ -38,6 +38,11 @@ pub enum CaseMaterial {
     },
     /// Sheen above nothing.
     Sheen(Sheen),
+    /// No surface, but a point of a medium.
+    Medium {
+        /// Henyey and Greenstein's g, in (-1, 1).
+        anisotropy: f64,
+    },
 }
 
 impl CaseMaterial {
@@ -49,6 +54,13 @@ impl CaseMaterial {
                 roughness: fields.share("diffuse_roughness")?,
             }),
             "sheen" => Ok(Self::Sheen(read_sheen(fields)?)),
+            "medium" => {
+                let anisotropy = fields.number("g")?;
+                if anisotropy.abs() >= 1.0 {
+                    return Err(fields.error("g", &format!("{anisotropy} must be between -1 and 1")));
+                }
+                Ok(Self::Medium { anisotropy })
+            }
             bsdf @ ("ggx" | "coat" | "sheen_over") => {
                 let alpha = if fields.has("alpha_x") || fields.has("alpha_y") {
                     if fields.has("alpha") {
@@ -80,7 +92,8 @@ impl CaseMaterial {
                 Ok(Self::Ggx { alpha, f0, albedo, coupled, coat, sheen, film })
             }
             other => {
-                let known = "\"ggx\", \"coat\", \"sheen\", \"sheen_over\", \"diffuse\" and \"eon\" are";
+                let known = "\"ggx\", \"coat\", \"sheen\", \"sheen_over\", \"diffuse\", \"eon\" and \
+                    \"medium\" are";
                 Err(fields.error("bsdf", &format!("\"{other}\" is not known; {known}")))
             }
         }
@@ -96,6 +109,7 @@ impl CaseMaterial {
                     "sheen_roughness {roughness} is below {MIN_ROUGHNESS}, the smallest that is shaded"
                 ))
             }
+            Self::Medium { .. } => unsupported("the point is in a medium, on no surface".into()),
             Self::Sheen(sheen) => Ok(Surface { sheen: Some(*sheen), ..Surface::default() }),
             &Self::Diffuse { albedo: diffuse_albedo, roughness: diffuse_roughness } => {
                 Ok(Surface { diffuse_albedo, diffuse_roughness, ..Surface::default() })

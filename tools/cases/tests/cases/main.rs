@@ -3,4 +3,5 @@
 mod anisotropy;
 mod ellipse;
 mod materials;
+mod media;
 mod reference;

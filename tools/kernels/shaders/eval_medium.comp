@@ -1,0 +1,77 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// eval.comp's twin for points in a medium, under lights of any kind, whose centers are relative to their
+// point.
+
+layout(local_size_x = 64) in;
+
+layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
+layout(constant_id = 1) const int FORM_FACTOR = 0;
+layout(constant_id = 7) const int FOOTPRINT = 0;
+layout(constant_id = 10) const int SHAPE = 0;
+const int HORIZON = 0;
+const int SPECULAR_LOBES = 0;
+const int LOBES = 0;
+
+#define LIGHTS_BINDING 0
+#define SHAPES_BINDING 2
+#define LIGHT_TEXTURES_BINDING 5
+#define AREALIGHT_MEDIA 1
+#include "effects.glsl"
+#include "polygon_lights.glsl"
+#include "round_lights.glsl"
+
+// The light is in the list of polygons and meshes
+const int SHAPE_NONE = 4;
+
+struct ArealightGpuMediumCase {
+    vec3 view;
+    float anisotropy;
+};
+
+layout(set = 0, binding = 3, std430) readonly buffer Cases {
+    ArealightGpuMediumCase cases[];
+};
+layout(set = 0, binding = 4, std430) writeonly buffer Results {
+    vec4 results[];
+};
+
+layout(push_constant, std430) uniform EvalConstants {
+    uint case_count;
+} constants;
+
+vec3 radiance_of(ArealightMediumPoint medium, uint index) {
+    if (SHAPE == SHAPE_NONE) {
+        ArealightGpuLight record = lights[index];
+        if (HAS_PROFILES && (record.flags & LIGHT_PROFILE) != 0u) {
+            return arealight_in_scattered(medium, load_shaped(record));
+        }
+        if (HAS_MESHES && (record.flags & LIGHT_MESH) != 0u) {
+            return arealight_in_scattered(medium, load_mesh(record));
+        }
+        if (HAS_POLYGONS) {
+            return arealight_in_scattered(medium, load_polygon(record));
+        }
+        return arealight_in_scattered(medium, load_quad(record));
+    }
+    ArealightGpuShape record = shapes[index];
+    if (SHAPE == int(SHAPE_TUBE)) {
+        return arealight_in_scattered(medium, load_tube(record));
+    }
+    if (SHAPE == int(SHAPE_SPHERE)) {
+        return arealight_in_scattered(medium, load_sphere(record));
+    }
+    return arealight_in_scattered(medium, load_disk(record));
+}
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= constants.case_count) {
+        return;
+    }
+    ArealightGpuMediumCase given = cases[index];
+    ArealightMediumPoint medium = arealight_medium_point(vec3(0.0), given.view, given.anisotropy);
+    results[index] = vec4(radiance_of(medium, index), 0.0);
+}
