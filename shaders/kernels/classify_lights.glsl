@@ -73,8 +73,8 @@ TileLight shape_light(uint index) {
     return light;
 }
 
-// Whether all of a tile is outside of the cone of a light with a profile; `before`: how far its farthest pixel
-// is before the light's center. The light shines within an angle of its normal.
+// Whether all of a tile is outside of the cone of a light with a profile, within an angle of its normal;
+// `before`: how far its farthest pixel is before the light's center.
 bool is_outside_cone(uint index, TileLight light, float before) {
     uint flags = lights[index].flags;
     if ((flags & LIGHT_PROFILE) == 0u || light.two_sided || light.normal == vec3(0.0)) {

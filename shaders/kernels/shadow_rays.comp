@@ -123,7 +123,8 @@ bool draw_through_profile(ArealightGpuLight record, ArealightShadowOutline outli
         // Spread over the light: the sequence of the plastic number
         vec2 place = fract(random + float(index) * vec2(0.75487767, 0.56984029));
         if (arealight_draw_ray(outline, to_frame, space, place, one)) {
-            float factor = arealight_profile_factor(record.profile, record.normal, one.distance * one.direction);
+            vec3 offset = one.distance * one.direction;
+            float factor = arealight_profile_factor(record.profile, record.normal, offset);
             if (factor > 0.0 && arealight_choose(choice, sum, factor)) {
                 ray = one;
                 is_drawn = true;

@@ -14,8 +14,8 @@ vec4 arealight_bridge_profile(uint row);
 
 const uint AREALIGHT_PROFILE_PIECES = 64u;
 
-// x, factor and sum of a profile at a point at the squared distance `side` from the foot of a perpendicular of
-// the squared length `height`; without cancellation.
+// x, factor and sum of a profile at a point at the squared distance `side` from the foot of a perpendicular
+// of the squared length `height`; without cancellation.
 vec3 arealight_profile_place(uint profile, float side, float height) {
     vec4 head = arealight_bridge_profile(profile);
     float square = max(side + height, AREALIGHT_LEAST_SQUARE);
