@@ -7,9 +7,9 @@
 // x = sine^2 * scale: 0 on the axis, 1 where the profile ends.
 
 // The host's bridge to the rows of profiles. The first one is (scale, count of levels, piece scale, 0). Of
-// each level follows (x, factor, sum, squared tangent), sum being the factor's integral over x from 0; then of
-// 64 pieces the beginning of each, as wide as each other in sqrt((1 - cosine) * piece scale), (x, factor, sum,
-// slope of the factor); at last the end, (1, 0, sum, 0).
+// each level follows (x, factor, sum, squared tangent), sum being the factor's integral over x from 0; then
+// of 64 pieces the beginning of each, as wide as each other in sqrt((1 - cosine) * piece scale), (x, factor,
+// sum, slope of the factor); at last the end, (1, 0, sum, 0).
 vec4 arealight_bridge_profile(uint row);
 
 const uint AREALIGHT_PROFILE_PIECES = 64u;
