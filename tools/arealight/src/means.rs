@@ -9,7 +9,8 @@ pub struct Means {
     samples: [u32; 2],
 }
 
-/// How far a picture is from one that converges to the truth, each a root of the mean square over the truth's mean.
+/// How far a picture is from one that converges to the truth, each a root of the mean square over the truth's
+/// mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Distance {
     /// What is left without the truth's own noise; none where so little is left that it may be chance.

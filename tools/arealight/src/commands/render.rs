@@ -68,7 +68,8 @@ pub struct Arguments {
     shadows: Option<Shadows>,
     /// Go on with rounds of shadow rays until their noise, in levels of 255 as the screen shows the means of
     /// 4 x 4 pixels, is below LEVELS; at most 64 rounds [default: one round]
-    #[arg(long, value_name = "LEVELS", conflicts_with_all = ["tiles", "reference"], value_parser = parse_levels)]
+    #[arg(long, value_name = "LEVELS", value_parser = parse_levels,
+        conflicts_with_all = ["tiles", "reference"])]
     shadow_noise: Option<f64>,
     /// Other random numbers, for the frames of a film
     #[arg(long, value_name = "N", default_value_t = 0)]

@@ -174,7 +174,7 @@ impl<'a> Rounds<'a> {
         let mut before = seen.to_vec();
         while means.samples() < MOST_ROUNDS && self.noise(&means, lamps).is_none_or(|noise| noise > self.most)
         {
-            // Each half of the means goes through seeds that follow each other: such rays complement each other
+            // Each half of the means has seeds that follow each other, whose rays complement each other
             let [half, index] = [means.samples() % 2, means.samples() / 2];
             let seed = view.seed.wrapping_add(half * (MOST_ROUNDS / 2) + index);
             let quality = (view.surfaces, view.quality);
