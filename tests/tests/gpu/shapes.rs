@@ -9,6 +9,7 @@ use arealight_tests::prelude::*;
 use arealight_tests::shapes::{ShapeFunction, ellipse_arguments, sphere_arguments};
 
 const EXACT: u32 = 0;
+const DIFFERENCE: u32 = 1;
 const SAMPLES: u64 = 1000;
 
 /// What [`arealight_ellipse_form_factor`](ShapeFunction::Ellipse) promises of its backward error.
@@ -36,6 +37,43 @@ fn before_a_needles_tip_no_digit_cancels() {
     for (case, (_, _, difference)) in cases.iter().zip(known) {
         let error = nearby_shape::distance(case, difference, 1e-7);
         assert!(error > 2.0 * BACKWARD, "{error:e}: {case:?}");
+    }
+}
+
+/// What a light of this size sends from there at most: the area it shows, over pi times the squared distance,
+/// and with the highest elevation of any of its points.
+fn most(ellipse: &Ellipse) -> f64 {
+    let area = ellipse.axis_u.cross(ellipse.axis_v).length();
+    let square = ellipse.center.length_squared();
+    let rise = ellipse.axis_u.z.hypot(ellipse.axis_v.z);
+    area / square * (ellipse.center.z.abs() + rise) / square.sqrt()
+}
+
+#[test]
+fn far_ellipses_keep_relative_precision() {
+    let Some(engine) = TestEngine::new() else { return };
+    for (name, level, bound) in [
+        // The height above the ellipse's plane is rounded in the distance, and so is the elevation
+        ("far", EXACT, 1e-6),
+        ("far-crossing", DIFFERENCE, 5e-6),
+    ] {
+        let cases = cases(Family::find(name).unwrap());
+        let mut comparison = Comparison::new(format!("{name}, level {level}"));
+        let mut plain = 0;
+        let found = engine.ellipses(ShapeFunction::Ellipse, level, &cases);
+        let clipped = engine.ellipses(ShapeFunction::Ellipse, EXACT, &cases);
+        for ((case, found), clipped) in cases.iter().zip(found).zip(clipped) {
+            let (truth, whole) = (form_factor(case).abs(), most(case));
+            // The small form's own error
+            let size =
+                case.axis_u.length_squared().max(case.axis_v.length_squared()) / case.center.length_squared();
+            let bound = bound + if name == "far" { 0.0 } else { 2.0 * size };
+            comparison.add(found / whole, truth / whole, bound, || format!("{case:?}"));
+            plain += usize::from((clipped - truth).abs() > bound * whole);
+        }
+        comparison.assert_all();
+        // The twin: without the difference form those that cross the horizon have no correct digit
+        assert!(name == "far" || plain > 500, "{plain} noticed");
     }
 }
 
