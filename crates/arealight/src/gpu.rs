@@ -40,7 +40,8 @@ impl GpuLight {
     /// It is convex and has at most four vertices
     /// ([`LightShape::is_convex_quad`](crate::LightShape::is_convex_quad)).
     pub const QUAD: u32 = 8;
-    /// It has a profile: the upper half of the flags is the cosine, of 65535, of an angle that it ends within.
+    /// It has a profile: the upper half of the flags is the cosine, of 65535, of an angle that it ends
+    /// within.
     pub const PROFILE: u32 = 16;
     /// Where that cosine begins.
     pub const PROFILE_END_SHIFT: u32 = 16;

@@ -221,7 +221,8 @@ pub enum LightFault {
     },
     /// Only flat lights have a front to measure a profile's angles from.
     #[error(
-        "profile: of a mesh, sphere, tube or disk with an image: give it to flat faces that are lights of their own"
+        "profile: of a mesh, sphere, tube or disk with an image: give it to flat faces that are lights of \
+         their own"
     )]
     ProfileNotFlat,
     /// The outline of a light with a profile is clipped by disks, edge by edge.

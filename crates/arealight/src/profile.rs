@@ -31,8 +31,8 @@ pub struct Profile {
 /// A place of a profile as the GPU knows it: what is from the axis up to here.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ProfilePlace {
-    /// How far from the axis: the squared sine, in parts of where the profile ends. What a surface opposite of
-    /// the light gets goes with it.
+    /// How far from the axis: the squared sine, in parts of where the profile ends. What a surface opposite
+    /// of the light gets goes with it.
     pub x: f64,
     /// The factor.
     pub factor: f64,
@@ -223,8 +223,8 @@ impl Profile {
     }
 
     /// Cosines that divide the profile so that the means between them differ least from it, in the sum of
-    /// squares over the squared sine: by dynamic programming over 180 angles up to `end`, and what is dark after
-    /// it.
+    /// squares over the squared sine: by dynamic programming over 180 angles up to `end`, and what is dark
+    /// after it.
     fn placed_levels(&self, end: f64, count: usize) -> Vec<f64> {
         const STEPS: usize = 180;
         let mut cosines: Vec<f64> =
