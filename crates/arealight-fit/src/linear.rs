@@ -86,6 +86,11 @@ impl LeastSquares {
     }
 }
 
+/// Rounds to six significant digits: what is printed is what was measured.
+pub fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -138,9 +143,4 @@ mod tests {
         assert_eq!(found[2], 0.0);
         assert_eq!(LeastSquares::new(2).solve(), [0.0, 0.0]);
     }
-}
-
-/// Rounds to six significant digits: what is printed is what was measured.
-pub fn six_digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
 }

@@ -101,8 +101,8 @@ impl Problem {
         for &[g, x] in &self.places {
             // What is possible grows with g by orders of magnitude
             let importance = 1.0 / (0.002 + 0.05 * g.powi(6));
-            let power = |row: usize| x.powi(row as i32);
-            let stretch = |lobe: usize| (0..4).map(|row| piece.stretch[row][lobe] * power(row)).sum::<f64>();
+            let powers = powers(x);
+            let stretch = |lobe: usize| stretch_at(piece, lobe, &powers);
             let stretches: [f64; 3] = std::array::from_fn(stretch);
             for &[mu, solid_angle] in &self.nodes {
                 let truth = henyey_greenstein(g, mu);
@@ -111,7 +111,7 @@ impl Problem {
                 let lobe = |k: usize| scale * (stretched_cosine(stretches[k], [mu, mu, -mu][k]) - 0.25 / PI);
                 let lobes: [f64; 3] = std::array::from_fn(lobe);
                 let given: f64 = (0..3).map(|k| piece.weight[0][k] * lobes[k]).sum();
-                let factors: Vec<f64> = self.weight.iter().map(|&(row, k)| power(row) * lobes[k]).collect();
+                let factors: Vec<f64> = self.weight.iter().map(|&(row, k)| powers[row] * lobes[k]).collect();
                 take(&factors, scale * (truth - 0.25 / PI) - given);
             }
         }
@@ -139,8 +139,9 @@ impl Problem {
         };
         let valid = |piece: &PhasePiece| {
             let narrow = |&[_, x]: &[f64; 2]| {
-                let at = |k| (0..4).map(|row: usize| piece.stretch[row][k] * x.powi(row as i32)).sum::<f64>();
-                (0..3).map(at).any(|stretch| !(0.02..3.0).contains(&stretch))
+                (0..3)
+                    .map(|lobe| stretch_at(piece, lobe, &powers(x)))
+                    .any(|stretch| !(0.02..3.0).contains(&stretch))
             };
             !self.places.iter().any(narrow)
         };
@@ -207,4 +208,14 @@ pub fn glsl(fit: &PhaseFit) -> String {
         }
     }
     text
+}
+
+/// The powers of a piece's variable.
+fn powers(x: f64) -> [f64; 5] {
+    [1.0, x, x * x, x * x * x, x * x * x * x]
+}
+
+/// A lobe's stretch by a piece's polynomial.
+fn stretch_at(piece: &PhasePiece, lobe: usize, powers: &[f64; 5]) -> f64 {
+    piece.stretch.iter().zip(powers).map(|(row, power)| row[lobe] * power).sum()
 }

@@ -3,6 +3,7 @@
 #[cfg(doc)]
 use crate::LightTable;
 use crate::light_shape::FLAT;
+use crate::profile::angle_of;
 use crate::{Light, LightShape, Profile};
 use glam::{DVec3, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -42,10 +43,10 @@ pub fn bounds(light: &Light, radius: f64) -> [DVec3; 2] {
     let shines_to_one_side = light.shape.is_flat() && !light.two_sided;
     let normal = light.shape.area_vector().normalize_or_zero();
     // Within its cone a profile's light goes no farther along an axis than the cone's direction next to it
-    let end = light.profile.as_ref().map_or(FRAC_PI_2, |profile| profile.end().acos());
+    let end = light.profile.as_ref().map_or(FRAC_PI_2, |profile| angle_of(profile.end()));
     let along = |axis: f64| {
         if shines_to_one_side && light.profile.is_some() && normal != DVec3::ZERO {
-            let beside = (axis.clamp(-1.0, 1.0).acos() - end).max(0.0);
+            let beside = (angle_of(axis) - end).max(0.0);
             return radius * (beside.cos().max(0.0) + 1e-6) + (1.0 + FLAT) * size;
         }
         if !shines_to_one_side || axis >= 0.0 || normal == DVec3::ZERO {

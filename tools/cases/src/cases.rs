@@ -288,7 +288,7 @@ const LEVELS: u32 = 4;
 fn read_profile(fields: &Fields) -> Result<Option<Profile>, CaseError> {
     let levels = fields.optional("profile_levels", Fields::length)?.map_or(LEVELS, |levels| levels as u32);
     let pairs = fields.optional("profile", |f, field| f.list(field, Fields::pair_at))?;
-    let pairs: Option<Vec<[f64; 2]>> = pairs.map(|pairs| pairs.iter().map(|p| p.to_array()).collect());
+    let pairs: Option<Vec<[f64; 2]>> = pairs.map(|pairs| pairs.iter().map(DVec2::to_array).collect());
     let profile = pairs.map(|pairs| Profile::new(&pairs, levels)).transpose();
     profile.map_err(|fault| fields.error("profile", &fault.to_string()))
 }

@@ -33,7 +33,10 @@ pub(super) fn profiled(profile: &Profile, vertices: &[DVec3], visible: &[DVec3],
         if direction == DVec3::ZERO || !direction.is_finite() {
             return mean;
         }
-        let angle = |place: ProfilePlace| (place.x / profile.scale()).min(1.0).sqrt().asin();
+        let angle = |place: ProfilePlace| {
+            let square = (place.x / profile.scale()).min(1.0);
+            square.sqrt().atan2((1.0 - square).sqrt())
+        };
         let ring = (angle(to) - angle(from)).sin();
         let lobe = 4.0 * (vector.length() / direction.length()).powi(3) / determinant;
         let narrow = ring.powi(4) / (ring.powi(4) + lobe * lobe);
