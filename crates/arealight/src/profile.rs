@@ -167,13 +167,18 @@ impl Profile {
     /// What a flat light with it sends, in parts of what it would send without: the mean of the factor over
     /// the hemisphere, by the cosine.
     pub fn power(&self) -> f64 {
-        // Simpson's rule a tenth of a degree; kinks of pairs at whole tenths cost nothing
-        let f = |i: u32| {
-            let angle = f64::from(i) * PI / 3600.0;
-            self.factor(angle.cos()) * (2.0 * angle).sin()
+        // Between pairs the factor is linear in the angle: its integral times the sine of twice the angle
+        let integral = |[from, to]: [[f64; 2]; 2]| {
+            let slope = (to[1] - from[1]) / (to[0] - from[0]).to_radians();
+            let at = |[degrees, factor]: [f64; 2]| {
+                let (sine, cosine) = (2.0 * degrees.to_radians()).sin_cos();
+                0.25 * slope * sine - 0.5 * factor * cosine
+            };
+            at(to) - at(from)
         };
-        let steps = (0..900).map(|i| f(2 * i) + 4.0 * f(2 * i + 1) + f(2 * i + 2));
-        steps.sum::<f64>() * PI / 10_800.0
+        let first = self.pairs[0];
+        let before = if first[0] > 0.0 { integral([[0.0, first[1]], first]) } else { 0.0 };
+        before + self.pairs.windows(2).map(|pair| integral([pair[0], pair[1]])).sum::<f64>()
     }
 
     /// Cosines of the levels, falling.
