@@ -148,7 +148,8 @@ fn rings_follow_their_float64_twin() {
     }
 }
 
-/// A floor under a lamp with a plate between, seen from above: the mean of each pixel over `rounds` of `shade`.
+/// A floor under a lamp with a plate between, seen from above: the mean of each pixel over `rounds` of
+/// `shade`.
 fn seen(
     engine: &TestEngine,
     lamp: &Light,
