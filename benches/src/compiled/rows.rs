@@ -177,7 +177,8 @@ fn other_rows() -> Vec<Row> {
     let half_vectors = Quality { specular_lobes: SpecularLobes::HalfVectors, ..exact };
     let footprint = |footprint| Quality { footprint, ..exact };
     let (polygon, mesh) = (Effects::POLYGON, Effects::POLYGON | Effects::MESH);
-    let every_kind = (Effects::all() - Effects::SURFACES) | Effects::SPECULAR_INPUT;
+    // A profile is what any flat light may have: those that have none don't pay for it
+    let every_kind = (Effects::all() - Effects::SURFACES - Effects::PROFILE) | Effects::SPECULAR_INPUT;
     let (disk, textured_disk) = (Effects::ELLIPSE, Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
     vec![
         // Other kinds of light in place of quads
