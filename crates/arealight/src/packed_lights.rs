@@ -27,7 +27,7 @@ pub struct PackedLights {
     /// textured light come four rows, its image's place: (corner, lowest u), (axis of u, lowest v), (axis of
     /// v, extent in u), (extent in v, 0, 0, 0), see [`TextureMap`]. After those of a light with a profile
     /// come its rows: (scale, levels, piece scale, 0), of each level its
-    /// [`ProfilePlace`](crate::profile::ProfilePlace) and the squared tangent of its angle, of each piece's
+    /// [`ProfilePlace`] and the squared tangent of its angle, of each piece's
     /// beginning its place with the slope last, and the end with slope 0.
     pub vertices: Vec<[f32; 4]>,
     /// One record per disk, sphere or tube: by kind in this order, else in the given one.
