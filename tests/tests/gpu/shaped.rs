@@ -1,13 +1,10 @@
 //! Lights with a profile on the GPU: known radiance, the float64 twin, and where they are hard.
 
 use arealight::Profile;
-use arealight::plan::{ShadowFilter, ShadowHistory};
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{SupportedCase, read_cases};
-use arealight_engine::Reference;
 use arealight_oracle::shading::ltc_on;
 use arealight_tests::prelude::*;
-use arealight_tests::scenes::box_of;
 
 fn read(name: &str) -> String {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/reference/");
@@ -146,76 +143,4 @@ fn rings_follow_their_float64_twin() {
             comparison.assert_all();
         }
     }
-}
-
-/// A floor under a lamp with a plate between, seen from above: the mean of each pixel over `rounds` of
-/// `shade`.
-fn seen(
-    engine: &TestEngine,
-    lamp: &Light,
-    rounds: u32,
-    shade: impl Fn(&mut SceneRenderer<'_>, &SceneBuffers, u32),
-) -> Vec<f64> {
-    const SIZE: [u32; 2] = [48, 48];
-    let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
-    let [a, b, c, d] =
-        [corner(-2.0, 0.0, 2.0), corner(2.0, 0.0, 2.0), corner(2.0, 0.0, -2.0), corner(-2.0, 0.0, -2.0)];
-    let mut triangles = vec![[a, b, c], [a, c, d]];
-    triangles.extend(box_of(corner(0.1, 0.8, -0.2), corner(0.5, 0.85, 0.6)));
-    let scene = scene_of(&triangles, without_textures(lambert(0.8)));
-    let buffers = SceneBuffers::new(&scene, DVec3::ZERO).unwrap();
-    let look = Camera::framing("", [DVec3::ZERO].into_iter().collect(), DVec3::NEG_Y, DVec3::Z, 1.0);
-    // Below the plate
-    let camera = Camera { position: DVec3::Y * 0.7, half_height: 2.0, ..look };
-    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
-    let renderer = SceneRenderer::new(engine, &buffers, std::slice::from_ref(lamp), constants, SIZE);
-    let mut renderer = renderer.unwrap();
-    (0..rounds).for_each(|seed| shade(&mut renderer, &buffers, seed));
-    let radiance = renderer.radiance().unwrap();
-    radiance.iter().map(|pixel| f64::from(pixel.x) / f64::from(rounds)).collect()
-}
-
-#[test]
-fn a_spot_and_its_shadows_are_those_of_monte_carlo() {
-    let Some(engine) = TestEngine::new() else { return };
-    let corners = [(-0.3, -0.3), (0.3, -0.3), (0.3, 0.3), (-0.3, 0.3)];
-    let spot = Light {
-        shape: LightShape::Polygon(corners.map(|(x, z)| DVec3::new(x, 1.6, z)).to_vec()),
-        radiance: Vec3::splat(5.0),
-        profile: Some(Profile::cone(0.2, 0.5, 6).unwrap()),
-        ..Light::default()
-    };
-    let wide = Light { profile: None, ..spot.clone() };
-    let options = ShadeOptions { surfaces: Effects::DIFFUSE, ..ShadeOptions::default() };
-    let by_monte_carlo = |lamp: &Light, shadows| {
-        seen(&engine, lamp, 1, |renderer, _, _| {
-            let reference = Reference { samples: 256, seed: 1, shadows, coupled: false };
-            renderer.reference(reference, |_| {}).unwrap();
-        })
-    };
-    let by_cosines = |lamp: &Light| {
-        seen(&engine, lamp, 1, |renderer, _, _| {
-            renderer.shade(options.surfaces, options.quality).unwrap();
-        })
-    };
-    let by_rays = seen(&engine, &spot, 16, |renderer, buffers, seed| {
-        let options = ShadeOptions { shadow_rays: 4, ..options };
-        let view = renderer.shadowed(buffers, options, (ShadowFilter::Off, ShadowHistory::Off)).unwrap();
-        renderer.shade_shadowed(&view, seed).unwrap();
-    });
-    let (plain, shadowed) = (by_monte_carlo(&spot, false), by_monte_carlo(&spot, true));
-    let mean = |picture: &[f64]| picture.iter().sum::<f64>() / picture.len() as f64;
-    // 2 % is ten times the noise of these means, and what six rings are off with chords for their rims
-    let close = |a: &[f64], b: &[f64]| (mean(a) / mean(b) - 1.0).abs() < 0.02;
-    assert!(close(&by_cosines(&spot), &plain), "{} and {}", mean(&by_cosines(&spot)), mean(&plain));
-    assert!(close(&by_rays, &shadowed), "{} and {}", mean(&by_rays), mean(&shadowed));
-    // Pixel by pixel: 256 samples of a factor from 0 to 1 leave up to .03 of a pixel's light, the rings .015
-    let off = error(&by_cosines(&spot), &plain, &plain);
-    assert!(off < 0.05, "{off}");
-    // 64 rays of a pixel leave .06 in the penumbra, of it a part of the pixels
-    let off = error(&by_rays, &shadowed, &shadowed);
-    assert!(off < 0.1, "{off}");
-    // The twins: without the cone, and without the plate
-    assert!(error(&by_cosines(&wide), &plain, &plain) > 0.3);
-    assert!(error(&plain, &shadowed, &shadowed) > 0.2);
 }
