@@ -53,7 +53,7 @@ pub fn points_of(
     (0..count).map(one).collect()
 }
 
-/// The same points under [`shape_lights`].
+/// The same points under `shape_lights`.
 pub fn under_shapes(seed: u64, points: impl IntoIterator<Item = EvalPoint>) -> Vec<EvalPoint> {
     let mut random = Random::new(seed);
     let under =

@@ -154,9 +154,16 @@ vec3 arealight_level_vector(mat3 space, ArealightLocalShaped local, float square
 
 // A lobe's space, as a profile's mean over a ring needs it.
 struct ArealightRingLobe {
-    mat3 from_space;
+    mat3 from_space; // transposed
     float determinant;
 };
+
+// No `inverse`, which not every language that the library is translated to has.
+ArealightRingLobe arealight_ring_lobe(mat3 space) {
+    mat3 cofactors = mat3(cross(space[1], space[2]), cross(space[2], space[0]), cross(space[0], space[1]));
+    float determinant = dot(space[0], cofactors[0]);
+    return ArealightRingLobe(cofactors * (1.0 / determinant), abs(determinant));
+}
 
 // A profile's mean over a ring between two places, `vector` being the ring's vector form factor in the lobe's
 // space: that of all of the ring, where the lobe is as wide as it; of a narrow lobe the factor in the mean
@@ -165,7 +172,7 @@ float arealight_profile_mean(ArealightLocalShaped local, ArealightRingLobe lobe,
                              vec3 vector) {
     float width = to.x - from.x;
     float mean = width > 1e-3 ? (to.z - from.z) / width : 0.5 * (from.y + to.y);
-    vec3 direction = lobe.from_space * vector;
+    vec3 direction = vector * lobe.from_space;
     float square = dot(direction, direction);
     float scale = 1.0 / local.scale;
     vec2 sines = vec2(from.x, to.x) * scale;
@@ -190,7 +197,7 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalShaped local) {
     float front = AREALIGHT_HAS_TWO_SIDED ? local.polygon.side : 1.0;
     vec3 all = arealight_outline_form_factor(space, local.polygon.center, local.polygon.to_frame,
                                              local.polygon.first, local.polygon.end, front);
-    ArealightRingLobe lobe = ArealightRingLobe(inverse(space), abs(determinant(space)));
+    ArealightRingLobe lobe = arealight_ring_lobe(space);
     vec3 sum = vec3(0.0);
     vec3 within = vec3(0.0);
     vec3 from = local.low;
