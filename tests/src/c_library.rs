@@ -76,6 +76,9 @@ pub const NO_LIGHT: ArealightLight = ArealightLight {
     axis_v: [0.0; 3],
     radius: 0.0,
     ends: 0,
+    profile_pair_count: 0,
+    profile: null(),
+    profile_levels: 0,
     reserved: 0,
 };
 

@@ -449,6 +449,14 @@ typedef struct ArealightLight {
     double radius;
     // Of a tube: one of AREALIGHT_TUBE_*.
     uint32_t ends;
+    // How many pairs `profile` has.
+    uint32_t profile_pair_count;
+    // Null, or of a disk or convex polygon: pairs of degrees from the front normal, rising from 0 to 90, and
+    // a factor of the radiance, linear between them, 0 after the last.
+    const double *profile;
+    // Read only with `profile`: how many angles divide it, 1 to 180. Of 4 the error is 1 % on Lambert
+    // surfaces and 3 % on glossy ones, of 8 less than half of it.
+    uint32_t profile_levels;
     // 0
     uint32_t reserved;
 } ArealightLight;
@@ -1246,7 +1254,7 @@ AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_images) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_buffers) == 20);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, dynamic_storage_buffers) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, reserved) == 28);
-AREALIGHT_ASSERT(sizeof(ArealightLight) == 168);
+AREALIGHT_ASSERT(sizeof(ArealightLight) == 184);
 AREALIGHT_ASSERT(offsetof(ArealightLight, name) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightLight, kind) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightLight, two_sided) == 12);
@@ -1265,7 +1273,10 @@ AREALIGHT_ASSERT(offsetof(ArealightLight, axis_u) == 104);
 AREALIGHT_ASSERT(offsetof(ArealightLight, axis_v) == 128);
 AREALIGHT_ASSERT(offsetof(ArealightLight, radius) == 152);
 AREALIGHT_ASSERT(offsetof(ArealightLight, ends) == 160);
-AREALIGHT_ASSERT(offsetof(ArealightLight, reserved) == 164);
+AREALIGHT_ASSERT(offsetof(ArealightLight, profile_pair_count) == 164);
+AREALIGHT_ASSERT(offsetof(ArealightLight, profile) == 168);
+AREALIGHT_ASSERT(offsetof(ArealightLight, profile_levels) == 176);
+AREALIGHT_ASSERT(offsetof(ArealightLight, reserved) == 180);
 AREALIGHT_ASSERT(sizeof(ArealightReach) == 80);
 AREALIGHT_ASSERT(offsetof(ArealightReach, center) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightReach, radius) == 24);

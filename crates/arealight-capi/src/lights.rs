@@ -8,7 +8,8 @@ use crate::constants::{
 use crate::failure::{ArealightResult, Failure, call};
 use crate::types::{ArealightLight, ArealightLightSummary, ArealightPackedLights, ArealightReach};
 use arealight::{
-    Effects, Light, LightError, LightShape, LightSummary, LightTexture, PackedLights, TubeEnds, reach,
+    Effects, Light, LightError, LightShape, LightSummary, LightTexture, PackedLights, Profile, TubeEnds,
+    reach,
 };
 use glam::{DVec2, DVec3, Vec3};
 use std::ffi::{CStr, c_char, c_void};
@@ -208,19 +209,37 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
         other => return Err(wrong("kind", other, "AREALIGHT_LIGHT_*")),
     };
     let textured = read_flag(light.textured, &field("textured"))?;
+    // SAFETY: as above.
+    let (name, pairs) = unsafe { (read_name(light.name), read_pairs(light, &field)?) };
+    let refused = |fault| LightError { index, name: name.clone(), fault };
+    let profile =
+        pairs.map(|pairs| Profile::new(&pairs, light.profile_levels)).transpose().map_err(refused)?;
     let mut made = Light {
-        // SAFETY: as above.
-        name: unsafe { read_name(light.name) },
+        name,
         radiance: Vec3::from_array(light.radiance),
         two_sided: read_flag(light.two_sided, &field("two_sided"))?,
         texture: textured.then_some(LightTexture { layer: light.texture_layer, uvs }),
-        profile: None,
+        profile,
         shape,
     };
     if !holes.is_empty() {
         made.cut_holes(&holes).map_err(|fault| LightError { index, name: made.name.clone(), fault })?;
     }
     Ok(made)
+}
+
+/// The pairs of a light's profile, where it has one.
+///
+/// # Safety
+/// As [`read_light`].
+unsafe fn read_pairs(
+    light: &ArealightLight,
+    field: &impl Fn(&'static str) -> String,
+) -> Result<Option<Vec<[f64; 2]>>, Failure> {
+    let count = 2 * light.profile_pair_count as usize;
+    // SAFETY: the same contract.
+    let numbers = unsafe { arguments::array(light.profile, count, &field("profile")) }?;
+    Ok((!light.profile.is_null()).then(|| numbers.as_chunks().0.to_vec()))
 }
 
 /// The most vertices of a light, its holes' among them: a count beyond it is not what the host meant.

@@ -1,5 +1,6 @@
 //! The C library as a host uses and misuses it: each mistake has a result and a message that names it.
 
+use arealight::Profile;
 use arealight_capi::{
     AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_SPECULAR_INPUT,
     AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TWO_SIDED, AREALIGHT_LIGHT_DISK, AREALIGHT_LIGHT_MESH,
@@ -115,6 +116,14 @@ fn lights_that_cannot_be_shaded_are_named() {
     let nan = [f64::NAN, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let textured = ArealightLight { textured: 1, texture_coordinates: CORNERS.as_ptr(), ..light() };
     let tube = ArealightLight { kind: AREALIGHT_LIGHT_TUBE, ..moon() };
+    let profiled = |pairs: &[f64], light| ArealightLight {
+        profile: pairs.as_ptr(),
+        profile_pair_count: pairs.len() as u32 / 2,
+        profile_levels: 4,
+        ..light
+    };
+    let (cone, back) = ([0.0, 1.0, 20.0, 1.0, 30.0, 0.0], [91.0, 1.0]);
+    let spot = profiled(&cone, light());
     for (wrong, result, words) in [
         (ArealightLight { kind: 5, ..light() }, ErrorArgument, "lights[1].kind: 5"),
         (ArealightLight { vertex_count: 2, ..light() }, ErrorLight, "lights[1] 'lamp': vertices: 2 given"),
@@ -134,10 +143,34 @@ fn lights_that_cannot_be_shaded_are_named() {
         (ArealightLight { radius: -1.0, name: null(), ..moon() }, ErrorLight, "lights[1]: radius: -1"),
         (ArealightLight { kind: AREALIGHT_LIGHT_DISK, ..moon() }, ErrorLight, "'moon': axis_u and axis_v"),
         (ArealightLight { textured: 1, ..moon() }, ErrorLight, "'moon': texture: only polygons and disks"),
+        (ArealightLight { profile: null(), ..spot }, ErrorArgument, "lights[1].profile: is null"),
+        (ArealightLight { profile_levels: 0, ..spot }, ErrorLight, "lights[1] 'lamp': profile: levels: 0"),
+        (profiled(&back, light()), ErrorLight, "lights[1] 'lamp': profile: pairs[0]: 91 degrees"),
+        (profiled(&[], light()), ErrorLight, "lights[1] 'lamp': profile: no pair"),
+        (profiled(&cone, moon()), ErrorLight, "'moon': profile: "),
     ] {
         refused(pack(&[light(), wrong], &mut arrays), result, words);
     }
-    // The twins
+    // The twins; what a profile is packed to is what it is in Rust
+    let (mut record, mut rows) = ([0u32; 16], [0.0f32; 512]);
+    let mut whole = ArealightPackedLights {
+        lights: record.as_mut_ptr().cast(),
+        lights_size: 64,
+        vertices: rows.as_mut_ptr().cast(),
+        vertices_size: 2048,
+        ..NO_ARRAYS
+    };
+    good(pack(&[spot], &mut whole));
+    let expected = Light {
+        shape: LightShape::Polygon(TRIANGLE.as_chunks().0.iter().map(|v| DVec3::from_array(*v)).collect()),
+        radiance: Vec3::ONE,
+        profile: Some(Profile::new(cone.as_chunks().0, 4).unwrap()),
+        ..Light::default()
+    };
+    let expected = PackedLights::new(&[expected], DVec3::ZERO).unwrap();
+    let vertices: &[u8] = bytemuck::cast_slice(&expected.vertices);
+    assert_eq!(bytemuck::bytes_of(&record), bytemuck::cast_slice::<_, u8>(&expected.lights));
+    assert_eq!(&bytemuck::bytes_of(&rows)[..whole.vertices_size as usize], vertices);
     good(pack(&[light(), textured, moon(), ArealightLight { axis_u: [1.0; 3], ..tube }], &mut arrays));
     // SAFETY: the pointers are null or valid.
     unsafe {
