@@ -50,8 +50,7 @@ const uint EFFECT_GLASS = 16777216u;
 const uint EFFECT_PROFILE = 33554432u;
 
 // Some polygon is not a convex quad without an image or a profile: Effects::BEYOND_QUADS in Rust.
-const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH
-                                | EFFECT_PROFILE;
+const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH | EFFECT_PROFILE;
 // Some light is a disk, sphere or tube: Effects::SHAPES in Rust.
 const uint EFFECTS_OF_SHAPES = EFFECT_ELLIPSE | EFFECT_SPHERE | EFFECT_TUBE;
 

@@ -49,7 +49,7 @@ void shade_polygon(inout PixelRadiance sum, ArealightPoint point, uint index) {
         add_light_at(sum, index, record.radiance, arealight_reflected(point, load_shaped(record)));
     } else if (HAS_MESHES && (record.flags & LIGHT_MESH) != 0u) {
         add_light_at(sum, index, record.radiance, arealight_reflected(point, load_mesh(record)));
-    } else {
+    } else if ((EFFECTS & (EFFECT_POLYGON | EFFECT_TEXTURED)) != 0u) {
         add_light_at(sum, index, record.radiance, arealight_reflected(point, load_polygon(record)));
     }
 }

@@ -195,7 +195,7 @@ fn other_rows() -> Vec<Row> {
         others("textured disks", "exact, ellipse", textured_disk, footprint(Footprint::Ellipse)),
         others("spheres", "exact", Effects::SPHERE, exact),
         others("tubes", "exact", Effects::TUBE, exact),
-        shade("quads with profiles", "exact", LOBES | Effects::PROFILE, true, exact),
+        others("lights with profiles", "exact", Effects::PROFILE, exact),
         // Several kinds
         shade("quads and polygons", "exact", LOBES | polygon, true, exact),
         shade("quads and disks", "exact", LOBES | disk, true, exact),

@@ -129,7 +129,7 @@ impl Light {
         effects.set(Effects::PROFILE, self.profile.is_some());
         match self.shape {
             LightShape::Polygon(_) | LightShape::Mesh { .. } => {
-                effects.set(Effects::POLYGON, !self.shape.is_convex_quad());
+                effects.set(Effects::POLYGON, self.profile.is_none() && !self.shape.is_convex_quad());
                 effects.set(Effects::TEXTURED, textured);
                 effects.set(Effects::MESH, self.shape.is_mesh());
             }

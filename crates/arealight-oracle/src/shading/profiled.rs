@@ -25,29 +25,35 @@ pub(super) fn profiled(profile: &Profile, vertices: &[DVec3], visible: &[DVec3],
         return 0.0;
     }
     let (back, determinant) = (inverse.inverse(), inverse.determinant().abs());
-    // A ring's mean of the profile: of a narrow lobe the factor in the mean direction of what it sees
+    // A ring's mean of the profile, about the mean direction of what the lobe sees of it
     let mean = |from: ProfilePlace, to: ProfilePlace, vector: DVec3| {
-        let width = to.x - from.x;
-        let mean = if width > 1e-3 { (to.sum - from.sum) / width } else { 0.5 * (from.factor + to.factor) };
-        let direction = back * vector;
-        if direction == DVec3::ZERO || !direction.is_finite() {
-            return mean;
+        let axis = vector.normalize_or_zero();
+        let cosine = (1.0 - vector.length()).max(0.0).sqrt();
+        let round = cosine + cosine * cosine;
+        let seen = 3.0 * round * axis.z * axis + DVec3::Z * (2.0 - round);
+        let direction = back * seen;
+        let (mut low, mut high) = (from, to);
+        if direction != DVec3::ZERO && direction.is_finite() {
+            let half_tangent = |square: f64| square.sqrt() / (1.0 + (1.0 - square).sqrt());
+            let [first, last] =
+                [from, to].map(|place| half_tangent((place.x / profile.scale()).clamp(0.0, 1.0)));
+            let cosine = normal.dot(direction.normalize());
+            let middle = half_tangent((1.0 - cosine * cosine).max(0.0)).clamp(first, last.max(first));
+            let shrunk = (seen.length() / direction.length()).powi(3) / determinant;
+            let width = shrunk.sqrt() * (0.25 + 0.25 * middle * middle);
+            let ends = [(middle - width).max(first), (middle + width).min(last)];
+            let narrow = 0.5 * (1.0 - width / (last - first).max(1e-30)).max(0.0);
+            let ends = [
+                ends[0] + narrow * (middle + width - ends[1]),
+                ends[1] + narrow * (middle - width - ends[0]),
+            ];
+            let at =
+                |tangent: f64| profile.place(&places, (1.0 - tangent * tangent) / (1.0 + tangent * tangent));
+            low = if ends[0] > first { at(ends[0]) } else { from };
+            high = if ends[1] < last { at(ends[1]) } else { to };
         }
-        let angle = |place: ProfilePlace| {
-            let square = (place.x / profile.scale()).min(1.0);
-            square.sqrt().atan2((1.0 - square).sqrt())
-        };
-        let ring = (angle(to) - angle(from)).sin();
-        let lobe = 4.0 * (vector.length() / direction.length()).powi(3) / determinant;
-        let narrow = ring.powi(4) / (ring.powi(4) + lobe * lobe);
-        let cosine = normal.dot(direction).abs() / direction.length();
-        let there = profile.place(&places, cosine);
-        let there = match there.x {
-            x if x <= from.x => from.factor,
-            x if x >= to.x => to.factor,
-            _ => there.factor,
-        };
-        mean + (there - mean) * narrow
+        let range = high.x - low.x;
+        if range > 1e-3 { (high.sum - low.sum) / range } else { 0.5 * (low.factor + high.factor) }
     };
     let factor = |part: &[DVec3]| transformed_form_factor(inverse, part);
     let vector = |part: &[DVec3]| {

@@ -165,31 +165,49 @@ ArealightRingLobe arealight_ring_lobe(mat3 space) {
     return ArealightRingLobe(cofactors * (1.0 / determinant), abs(determinant));
 }
 
+// The tangent of the half angle of a place of a profile.
+float arealight_half_tangent(float x, float scale) {
+    float square = min(x / scale, 1.0);
+    return sqrt(square) / (1.0 + sqrt(1.0 - square));
+}
+
 // A profile's mean over a ring between two places, `vector` being the ring's vector form factor in the lobe's
-// space: that of all of the ring, where the lobe is as wide as it; of a narrow lobe the factor in the mean
-// direction of what it sees of it.
+// space: over the angles about the mean direction of what the lobe sees of the ring, as far as the lobe is
+// wide there. In all of the ring, where the lobe is wider than it.
 float arealight_profile_mean(ArealightLocalShaped local, ArealightRingLobe lobe, vec3 from, vec3 to,
                              vec3 vector) {
-    float width = to.x - from.x;
-    float mean = width > 1e-3 ? (to.z - from.z) / width : 0.5 * (from.y + to.y);
-    vec3 direction = vector * lobe.from_space;
+    // In the lobe's space the ring is taken for a cap that has its vector: the mean of cosine times direction
+    float form_factor = length(vector);
+    vec3 axis = vector / max(form_factor, AREALIGHT_LEAST_SQUARE);
+    float cosine = sqrt(max(1.0 - form_factor, 0.0));
+    float spread = cosine + cosine * cosine;
+    vec3 mean = 3.0 * spread * axis.z * axis + vec3(0.0, 0.0, 2.0 - spread);
+    vec3 direction = mean * lobe.from_space;
     float square = dot(direction, direction);
-    float scale = 1.0 / local.scale;
-    vec2 sines = vec2(from.x, to.x) * scale;
-    vec2 cosines = sqrt(max(1.0 - sines, 0.0));
-    sines = sqrt(sines);
-    float angle = sines.y * cosines.x - cosines.y * sines.x;
-    // The squared angle that the lobe is wide there: the root of how its space shrinks solid angles
-    float ratio = dot(vector, vector) / max(square, AREALIGHT_LEAST_SQUARE);
-    float lobe_square = 4.0 * ratio * sqrt(ratio) / lobe.determinant;
-    float narrow = angle * angle;
-    narrow *= narrow;
-    narrow = narrow / max(narrow + lobe_square * lobe_square, AREALIGHT_LEAST_SQUARE);
-    float height = dot(direction, local.normal);
-    vec3 side = direction - height * local.normal;
-    vec3 place = arealight_profile_place(local.profile, dot(side, side), height * height);
-    float there = place.x <= from.x ? from.y : place.x >= to.x ? to.y : place.y;
-    return square > 0.0 ? mix(mean, there, narrow) : mean;
+    float height = abs(dot(direction, local.normal));
+    float side = length(direction - dot(direction, local.normal) * local.normal);
+    // By tangents of half angles, which are nearly as the angles
+    float first = arealight_half_tangent(from.x, local.scale);
+    float last = arealight_half_tangent(to.x, local.scale);
+    float middle = clamp(side / max(sqrt(square) + height, AREALIGHT_LEAST_SQUARE), first, last);
+    // A quarter of the angle that the lobe is wide: the root of how its space shrinks solid angles
+    float ratio = dot(mean, mean) / max(square, AREALIGHT_LEAST_SQUARE);
+    float width = sqrt(ratio * sqrt(ratio) / lobe.determinant) * (0.25 + 0.25 * middle * middle);
+    vec2 ends = vec2(max(middle - width, first), min(middle + width, last));
+    // What the ring cuts off at one end goes from the other, too: the mean is to stay
+    float narrow = 0.5 * max(1.0 - width / max(last - first, AREALIGHT_LEAST_SQUARE), 0.0);
+    ends += narrow * vec2(middle + width - ends.y, middle - width - ends.x);
+    bool is_known = square > 0.0 && square < 3e38;
+    vec2 squares = ends * ends;
+    vec2 rests = (1.0 - squares) * (1.0 - squares);
+    if (is_known && ends.x > first) {
+        from = arealight_profile_place(local.profile, 4.0 * squares.x, rests.x);
+    }
+    if (is_known && ends.y < last) {
+        to = arealight_profile_place(local.profile, 4.0 * squares.y, rests.y);
+    }
+    float range = to.x - from.x;
+    return range > 1e-3 ? (to.z - from.z) / range : 0.5 * (from.y + to.y);
 }
 
 // Error beyond the form factors': of the profile within a ring, where it is its mean.
