@@ -32,4 +32,8 @@
 #define HISTORY_BINDING 24
 #define MOTION_BINDING 25
 
+// Media.
+#define FROXELS_BINDING 26
+#define MEDIUM_BINDING 27
+
 #endif

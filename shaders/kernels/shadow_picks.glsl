@@ -16,10 +16,7 @@ layout(set = 0, binding = PICKS_BINDING, std430) PICKS_ACCESS buffer ShadowPicks
     uint shadow_picks[];
 };
 
-const uint PICK_SPECULAR = 0x80000000u; // of the specular lobes, else of the diffuse one
-const uint PICK_SHAPE = 0x40000000u;    // a disk, sphere or tube, else a polygon or mesh
-const uint PICK_INDEX = 0x3fffffffu;
-const uint NO_PICK = 0xffffffffu;
+#include "pick_bits.glsl"
 
 // Where the word of a pixel is.
 uint pixel_picks(ivec2 pixel, ivec2 size) {

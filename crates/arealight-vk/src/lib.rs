@@ -38,7 +38,7 @@
 //! | your images and buffers | [`ShadeResources`], [`ShadePass::write_set`] |
 //! | your barriers | [`ShadePass::accesses`] |
 //! | a frame | [`arealight::PackedLights`], [`ShadeFrame`], [`ShadePass::record`] |
-//! | images on lights, shadows | [`LightTextures`], [`ShadowPass`] |
+//! | images on lights, shadows, fog | [`LightTextures`], [`ShadowPass`], [`MediumPass`] |
 //!
 //! Every `unsafe` function says what it trusts you with: that handles belong together, that they outlive what
 //! is made of them, and that commands are being recorded.
@@ -53,6 +53,7 @@ mod frame;
 mod layouts;
 mod light_textures;
 mod limits;
+mod medium;
 #[cfg(feature = "gpu-allocator")]
 mod memory;
 mod module;
@@ -79,6 +80,7 @@ pub use frame::{ShadeFrame, StencilTest, Viewport};
 pub use gpu_allocator;
 pub use layouts::{Descriptors, filtered_image_sampler};
 pub use light_textures::{LightTextures, TextureUpdate};
+pub use medium::{MediumFrame, MediumPass, MediumPassInfo, MediumResources, MediumStage};
 pub use pass::ComputePass;
 pub use prune::{freeze, prune};
 pub use resource::Resource;
@@ -100,6 +102,7 @@ mod tests {
         is_shared::<Context>();
         is_shared::<ShadePass>();
         is_shared::<ShadowPass>();
+        is_shared::<MediumPass>();
         is_shared::<TableImage>();
         is_shared::<LightTextures>();
         #[cfg(feature = "gpu-allocator")]

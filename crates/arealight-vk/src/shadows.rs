@@ -430,9 +430,9 @@ struct HistoryHead {
 }
 
 /// What a dispatch wrote, and what the next one may do with it.
-const WRITTEN: (vk::PipelineStageFlags, vk::AccessFlags) =
+pub(crate) const WRITTEN: (vk::PipelineStageFlags, vk::AccessFlags) =
     (vk::PipelineStageFlags::COMPUTE_SHADER, vk::AccessFlags::SHADER_WRITE);
-const USED: (vk::PipelineStageFlags, vk::AccessFlags) = (
+pub(crate) const USED: (vk::PipelineStageFlags, vk::AccessFlags) = (
     vk::PipelineStageFlags::COMPUTE_SHADER,
     vk::AccessFlags::from_raw(vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw()),
 );

@@ -149,6 +149,38 @@ pub struct ShadowConstants {
     pub size: [u32; 2],
 }
 
+/// Push constants of the kernels of a medium.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct MediumConstants {
+    /// As [`ShadeConstants::position_from_clip`].
+    pub position_from_clip: [[f32; 4]; 4],
+    /// The camera's position relative to the origin.
+    pub camera: [f32; 3],
+    /// How many polygon lights shine.
+    pub light_count: u32,
+    /// What is scattered per unit of length, a channel.
+    pub scattering: [f32; 3],
+    /// What is scattered or absorbed per unit of length.
+    pub extinction: f32,
+    /// How many shapes shine.
+    pub shape_count: u32,
+    /// How many of the first polygon lights are convex quads without a texture.
+    pub quad_count: u32,
+    /// Of the random numbers that distances and rays are drawn with.
+    pub seed: u32,
+    /// Henyey and Greenstein's g.
+    pub anisotropy: f32,
+    /// Froxels of a slice: columns, and rows from bit 16 on.
+    pub columns_rows: u32,
+    /// How many slices there are.
+    pub slices: u32,
+    /// About where slices begin to grow.
+    pub nearest: f32,
+    /// Where they end.
+    pub farthest: f32,
+}
+
 /// A node of a binary hierarchy of boxes, [`crate::Blockers::nodes`]: `ArealightGpuBvhNode` in
 /// `shaders/kernels/bvh.glsl`.
 #[repr(C)]

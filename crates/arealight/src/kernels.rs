@@ -134,6 +134,21 @@ pub static SHADOW_HISTORY: Kernel =
 pub static SHADOW_FILTER: Kernel =
     Kernel::of_pass("shadow_filter", include_bytes!("../spirv/shadow_filter.spv"), &SHADOW_PASS);
 
+/// The kernels of a medium's pass, which have one descriptor set and [`crate::gpu::MediumConstants`].
+pub static MEDIUM_PASS: [&Kernel; 3] = [&MEDIUM_SCATTER, &MEDIUM_INTEGRATE, &MEDIUM_COMPOSE];
+
+/// Fills froxels with what a medium scatters of every light towards the camera; an invocation per froxel.
+pub static MEDIUM_SCATTER: Kernel =
+    Kernel::of_pass("medium_scatter", include_bytes!("../spirv/medium_scatter.spv"), &MEDIUM_PASS);
+
+/// Sums that along each column of froxels, from the camera on; an invocation per column.
+pub static MEDIUM_INTEGRATE: Kernel =
+    Kernel::of_pass("medium_integrate", include_bytes!("../spirv/medium_integrate.spv"), &MEDIUM_PASS);
+
+/// Puts the sum before the surfaces of a picture; an invocation per pixel.
+pub static MEDIUM_COMPOSE: Kernel =
+    Kernel::of_pass("medium_compose", include_bytes!("../spirv/medium_compose.spv"), &MEDIUM_PASS);
+
 /// Loads a part of an image into level 0 of a layer of the light textures; an invocation per texel of the
 /// level. Push constants: [`crate::gpu::TextureLoadConstants`].
 pub static TEXTURE_LOAD: Kernel = Kernel::new("texture_load", include_bytes!("../spirv/texture_load.spv"));
@@ -145,8 +160,18 @@ pub static TEXTURE_LOAD: Kernel = Kernel::new("texture_load", include_bytes!("..
 pub static TEXTURE_BLUR: Kernel = Kernel::new("texture_blur", include_bytes!("../spirv/texture_blur.spv"));
 
 /// Every kernel.
-pub static ALL: [&Kernel; 7] =
-    [&SHADE, &CLASSIFY, &SHADOW_RAYS, &SHADOW_HISTORY, &SHADOW_FILTER, &TEXTURE_LOAD, &TEXTURE_BLUR];
+pub static ALL: [&Kernel; 10] = [
+    &SHADE,
+    &CLASSIFY,
+    &SHADOW_RAYS,
+    &SHADOW_HISTORY,
+    &SHADOW_FILTER,
+    &MEDIUM_SCATTER,
+    &MEDIUM_INTEGRATE,
+    &MEDIUM_COMPOSE,
+    &TEXTURE_LOAD,
+    &TEXTURE_BLUR,
+];
 
 #[cfg(test)]
 mod tests {

@@ -293,6 +293,58 @@ pub fn shadow_filter_specialization(
     values
 }
 
+/// What the rays of a medium are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum MediumRays {
+    /// None: light passes through everything, or the host's module says what arrives.
+    #[default]
+    Off = 0,
+    /// One a froxel, for a light that is drawn by how much of it is scattered there. For hosts that filter over
+    /// frames.
+    AFroxel = 1,
+    /// One a froxel and light.
+    ALight = 2,
+}
+
+/// How a medium is shaded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct MediumOptions {
+    /// What asks for what blocks light.
+    pub rays: MediumRays,
+    /// Whether scattering and extinction come from an image, a texel a froxel; else they are the frame's.
+    pub by_image: bool,
+    /// Whether a froxel's distance is drawn within it, by the frame's seed; else it is its middle.
+    pub jitter: bool,
+    /// As [`ShadeOptions::from_depth`], of the surfaces that the medium is before.
+    pub from_depth: bool,
+    /// The format of the radiance that it is put before.
+    pub format: RadianceFormat,
+    /// Of it the form factor and how images are looked up.
+    pub quality: Quality,
+}
+
+/// The values of the constants of [`kernels::MEDIUM_SCATTER`], for a frame's lights.
+pub fn medium_scatter_specialization(options: MediumOptions, lights: LightSummary) -> Vec<(u32, u32)> {
+    vec![
+        (kernels::constant::EFFECTS, lights.effects.bits()),
+        (kernels::constant::FORM_FACTOR, options.quality.form_factor as u32),
+        (kernels::constant::FOOTPRINT, options.quality.footprint as u32),
+        (kernels::constant::HAS_QUADS, u32::from(lights.quad_count > 0)),
+        (kernels::constant::MEDIUM_RAYS, options.rays as u32),
+        (kernels::constant::MEDIUM_IMAGE, u32::from(options.by_image)),
+        (kernels::constant::MEDIUM_JITTER, u32::from(options.jitter)),
+    ]
+}
+
+/// The values of the constants of [`kernels::MEDIUM_COMPOSE`].
+pub fn medium_compose_specialization(options: MediumOptions) -> Vec<(u32, u32)> {
+    vec![
+        (kernels::constant::POSITION_SOURCE, u32::from(options.from_depth)),
+        (kernels::constant::OUTPUT, options.format as u32),
+    ]
+}
+
 /// The values of the classify kernel's specialisation constants, for the lights of a frame.
 pub fn classify_specialization(
     options: ShadeOptions,

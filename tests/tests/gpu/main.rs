@@ -19,6 +19,7 @@ mod cpp_host;
 mod descriptors;
 mod effects;
 mod fog;
+mod fog_frames;
 mod footprints;
 mod frame;
 mod frames_in_flight;

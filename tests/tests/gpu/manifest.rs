@@ -42,7 +42,7 @@ fn kernels_say_what_another_reader_finds() {
 
 #[test]
 fn kernels_of_a_pass_have_one_descriptor_set() {
-    for pass in [&kernels::SHADE_PASS[..], &kernels::SHADOW_PASS] {
+    for pass in [&kernels::SHADE_PASS[..], &kernels::SHADOW_PASS, &kernels::MEDIUM_PASS] {
         let set = |kernel: &Kernel| -> Vec<_> {
             kernel.bindings().iter().map(|one| (one.number, one.kind)).collect()
         };
@@ -60,6 +60,7 @@ fn sizes_and_constants_are_those_of_the_shaders() {
     let size = |kernel: &Kernel| kernel.push_constant_size() as usize;
     assert_eq!(size(shade), size_of::<arealight::gpu::ShadeConstants>());
     assert_eq!(size(&kernels::SHADOW_FILTER), size_of::<arealight::gpu::ShadowConstants>());
+    assert_eq!(size(&kernels::MEDIUM_SCATTER), size_of::<arealight::gpu::MediumConstants>());
     assert_eq!(size(&kernels::TEXTURE_LOAD), size_of::<arealight::gpu::TextureLoadConstants>());
     assert_eq!(size(&kernels::TEXTURE_BLUR), 4 * (arealight::pyramid::MOST_TAPS + 1));
     assert_eq!(size(&tool::kernels::EVAL), size_of::<tool::gpu::EvalConstants>());

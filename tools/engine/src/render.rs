@@ -1,5 +1,6 @@
 //! What a camera sees of a scene and its lights.
 
+pub(crate) mod fog;
 pub(crate) mod shadowed;
 pub(crate) mod tiled;
 

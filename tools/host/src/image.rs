@@ -55,14 +55,32 @@ impl Host {
         description: &ImageDescription<'_>,
         samples: u32,
     ) -> Result<Image, HostError> {
+        self.image_of(description, samples, None)
+    }
+
+    /// As [`Host::image`], in three dimensions: [`Image::view`] is of all of it, and there is no array.
+    ///
+    /// # Errors
+    /// As [`Host::image`].
+    pub fn volume(&self, description: &ImageDescription<'_>, depth: u32) -> Result<Image, HostError> {
+        self.image_of(description, 1, Some(depth))
+    }
+
+    fn image_of(
+        &self,
+        description: &ImageDescription<'_>,
+        samples: u32,
+        depth: Option<u32>,
+    ) -> Result<Image, HostError> {
+        let image_type = if depth.is_some() { vk::ImageType::TYPE_3D } else { vk::ImageType::TYPE_2D };
         let usage = description.usage | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
         let samples = vk::SampleCountFlags::from_raw(samples);
-        self.check_image(description, usage, samples)?;
+        self.check_image(description, usage, samples, (image_type, depth.unwrap_or(1)))?;
         let [width, height] = description.extent;
         let info = vk::ImageCreateInfo::default()
-            .image_type(vk::ImageType::TYPE_2D)
+            .image_type(image_type)
             .format(description.format)
-            .extent(vk::Extent3D { width, height, depth: 1 })
+            .extent(vk::Extent3D { width, height, depth: depth.unwrap_or(1) })
             .mip_levels(1)
             .array_layers(description.layers)
             .samples(samples)
@@ -91,7 +109,9 @@ impl Host {
         bound.named("vkBindImageMemory")?;
 
         // A view can be made only of an image that is used for more than copies
-        if !description.usage.is_empty() {
+        if depth.is_some() {
+            image.view = image.make_view(vk::ImageViewType::TYPE_3D, 1)?;
+        } else if !description.usage.is_empty() {
             image.view = image.make_view(vk::ImageViewType::TYPE_2D, 1)?;
             image.array_view = image.make_view(vk::ImageViewType::TYPE_2D_ARRAY, description.layers)?;
         }
@@ -104,10 +124,11 @@ impl Host {
         image: &ImageDescription<'_>,
         usage: vk::ImageUsageFlags,
         samples: vk::SampleCountFlags,
+        (image_type, depth): (vk::ImageType, u32),
     ) -> Result<(), HostError> {
         let refuse = |message| Err(HostError::InvalidArgument { name: image.name.to_owned(), message });
         let [width, height] = image.extent;
-        if width == 0 || height == 0 || image.layers == 0 {
+        if width == 0 || height == 0 || depth == 0 || image.layers == 0 {
             return refuse(format!("{width}×{height} texels, {} layers: none may be 0", image.layers));
         }
         // SAFETY: The physical device is of this instance.
@@ -115,7 +136,7 @@ impl Host {
             self.instance().get_physical_device_image_format_properties(
                 self.physical_device(),
                 image.format,
-                vk::ImageType::TYPE_2D,
+                image_type,
                 vk::ImageTiling::OPTIMAL,
                 usage,
                 vk::ImageCreateFlags::empty(),
@@ -134,7 +155,11 @@ impl Host {
                     ));
                 }
                 let most = [limit.max_extent.width, limit.max_extent.height];
-                if width > most[0] || height > most[1] || image.layers > limit.max_array_layers {
+                if width > most[0]
+                    || height > most[1]
+                    || depth > limit.max_extent.depth
+                    || image.layers > limit.max_array_layers
+                {
                     return refuse(format!(
                         "{width}×{height} texels, {} layers: the device has {}×{} and {} at most",
                         image.layers, most[0], most[1], limit.max_array_layers

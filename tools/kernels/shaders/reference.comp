@@ -48,28 +48,8 @@ layout(constant_id = 101) const uint COUPLED = 0u;
 #include "scene_blocker.glsl"
 #include "shape_sampling.glsl"
 
-struct ArealightGpuLightSampling {
-    vec3 normal;
-    float area;
-    uint first_triangle;
-    uint triangle_count;
-    uint reserved0;
-    uint reserved1;
-};
+#include "light_sampling.glsl"
 
-struct ArealightGpuLightTriangle {
-    uint vertex0;
-    uint vertex1;
-    uint vertex2;
-    float cumulative;
-};
-
-layout(set = 0, binding = 2, std430) readonly buffer LightSampling {
-    ArealightGpuLightSampling light_sampling[];
-};
-layout(set = 0, binding = 3, std430) readonly buffer LightTriangles {
-    ArealightGpuLightTriangle light_triangles[];
-};
 layout(set = 0, binding = 8, rgba32f) uniform image2D radiance_image;
 
 layout(push_constant, std430) uniform ReferenceConstants {
@@ -335,35 +315,6 @@ vec3 sample_direction(Lobes lobes, inout RandomState random) {
     return sample_cosine(u);
 }
 
-// A point of a light relative to its center, and the unit normal of the front there.
-struct LightPoint {
-    vec3 offset;
-    vec3 normal;
-};
-
-// The normal of a triangle of a light: the light's, or of a mesh its own.
-vec3 triangle_normal(ArealightGpuLightSampling sampling, vec3 a, vec3 b, vec3 c) {
-    return sampling.normal == vec3(0.0) ? arealight_normalize_or(cross(b - a, c - a), vec3(0.0))
-        : sampling.normal;
-}
-
-// Uniform by area.
-LightPoint sample_point(ArealightGpuLightSampling sampling, inout RandomState random) {
-    float choice = random_float(random);
-    uint index = sampling.first_triangle;
-    uint last = index + sampling.triangle_count - 1u;
-    while (index < last && choice >= light_triangles[index].cumulative) {
-        index++;
-    }
-    ArealightGpuLightTriangle triangle = light_triangles[index];
-    vec3 a = arealight_bridge_vertex(triangle.vertex0);
-    vec3 b = arealight_bridge_vertex(triangle.vertex1);
-    vec3 c = arealight_bridge_vertex(triangle.vertex2);
-    float root = sqrt(random_float(random));
-    float v = random_float(random) * root;
-    return LightPoint(a * (1.0 - root) + b * (root - v) + c * v, triangle_normal(sampling, a, b, c));
-}
-
 // Whether a point of a light's plane, relative to its center, lies within its outline: the even-odd rule,
 // along the two axes in which the polygon is widest.
 bool inside_outline(ArealightPolygonLight light, vec3 normal, vec3 point) {
@@ -384,28 +335,6 @@ bool inside_outline(ArealightPolygonLight light, vec3 normal, vec3 point) {
     return inside;
 }
 
-// The factor of a light's profile at a point of it, `offset` from the surface.
-float profile_factor(uint index, vec3 normal, vec3 offset) {
-    bool has_profile = (lights[index].flags & LIGHT_PROFILE) != 0u;
-    return has_profile ? arealight_profile_factor(lights[index].profile, normal, offset) : 1.0;
-}
-
-// The radiance of a light's point, relative to its center.
-vec3 light_radiance(ArealightPolygonLight light, vec3 point) {
-    return light.image.layer == AREALIGHT_NO_IMAGE ? light.radiance
-                                                   : light.radiance
-                                                       * arealight_image_color(light.image, point);
-}
-
-// The light's density in solid angle at a point of it, `offset` from the surface: distance^2 / (area
-// |cosine|); 0 where it does not emit towards the surface at `position`.
-float light_density(ArealightPolygonLight light, float area, vec3 normal, vec3 offset, vec3 position) {
-    float square = dot(offset, offset);
-    float cosine = -dot(normal, offset) * inversesqrt(max(square, AREALIGHT_TINY));
-    float side = arealight_lit_side(offset, normal, light.two_sided, arealight_position_error(position));
-    return side != 0.0 ? square / (area * abs(cosine)) : 0.0;
-}
-
 // One sample of one light: a point of it, weighed against the BRDF's density.
 vec3 estimate_by_light(Lobes lobes, uint index, ArealightPolygonLight light,
                        ArealightGpuLightSampling sampling, inout RandomState random) {
@@ -417,8 +346,7 @@ vec3 estimate_by_light(Lobes lobes, uint index, ArealightPolygonLight light,
     if (by_light <= 0.0 || by_brdf <= 0.0 || !arrives(lobes, offset)) {
         return vec3(0.0);
     }
-    return light_radiance(light, point.offset) * profile_factor(index, point.normal, offset)
-        * evaluate(lobes, direction) / (by_light + by_brdf);
+    return light_radiance(index, light, point, offset) * evaluate(lobes, direction) / (by_light + by_brdf);
 }
 
 // The sample's BRDF direction, where it meets the light, weighed against the light's density.
@@ -439,8 +367,8 @@ vec3 estimate_by_brdf(Lobes lobes, vec3 direction, float by_brdf, uint index,
                                                                                                 offset)) {
         return vec3(0.0);
     }
-    return light_radiance(light, offset - center) * profile_factor(index, sampling.normal, offset)
-        * evaluate(lobes, direction) / (by_light + by_brdf);
+    LightPoint met = LightPoint(offset - center, sampling.normal);
+    return light_radiance(index, light, met, offset) * evaluate(lobes, direction) / (by_light + by_brdf);
 }
 
 // The same for a mesh: every triangle that the direction meets. As in the shade kernel, none hides another.

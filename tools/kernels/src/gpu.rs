@@ -24,6 +24,38 @@ pub struct ReferenceConstants {
     pub shape_count: u32,
 }
 
+/// Push constants of the Monte Carlo reference of media.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct MediumReferenceConstants {
+    /// From clip space to positions.
+    pub position_from_clip: [[f32; 4]; 4],
+    /// The camera's position relative to the origin.
+    pub camera: [f32; 3],
+    /// How many polygons and meshes shine.
+    pub light_count: u32,
+    /// What is scattered per unit of length, a channel.
+    pub scattering: [f32; 3],
+    /// What is scattered or absorbed per unit of length.
+    pub extinction: f32,
+    /// How many shapes shine.
+    pub shape_count: u32,
+    /// As [`ReferenceConstants::first_sample`]; at 0 the picture is dimmed, too.
+    pub first_sample: u32,
+    /// As [`ReferenceConstants::sample_count`].
+    pub sample_count: u32,
+    /// As [`ReferenceConstants::weight`].
+    pub weight: f32,
+    /// Henyey and Greenstein's g.
+    pub anisotropy: f32,
+    /// Where the medium ends.
+    pub farthest: f32,
+    /// Another seed gives independent noise.
+    pub seed: u32,
+    /// Zero.
+    pub reserved: u32,
+}
+
 /// A light's triangle for the reference's light sampling: three vertex indices, and the sum of the areas of
 /// this light's triangles up to and with this one.
 #[repr(C)]

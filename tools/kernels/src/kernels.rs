@@ -26,6 +26,10 @@ pub const COUPLED: u32 = 101;
 /// [`crate::gpu::ReferenceConstants`].
 pub static REFERENCE: Kernel = Kernel::new("reference", include_bytes!("../spirv/reference.spv"));
 
+/// Puts a medium before a picture by Monte Carlo. Push constants: [`crate::gpu::MediumReferenceConstants`].
+pub static REFERENCE_MEDIUM: Kernel =
+    Kernel::new("reference_medium", include_bytes!("../spirv/reference_medium.spv"));
+
 /// Finds the surface that each pixel sees, in a hierarchy of triangles, and writes a G-buffer: the planes
 /// `out_*`, and in w of positions one more than the triangle's index. Push constants:
 /// [`crate::gpu::VisibilityConstants`].
@@ -38,4 +42,5 @@ pub static SHADOW_RAYS_MASKED: Kernel =
     Kernel::new("shadow_rays", include_bytes!("../spirv/shadow_rays_masked.spv"));
 
 /// Every kernel of this crate that is bound by itself.
-pub static ALL: [&Kernel; 5] = [&EVAL, &EVAL_SHAPES, &EVAL_MEDIUM, &REFERENCE, &VISIBILITY];
+pub static ALL: [&Kernel; 6] =
+    [&EVAL, &EVAL_SHAPES, &EVAL_MEDIUM, &REFERENCE, &REFERENCE_MEDIUM, &VISIBILITY];

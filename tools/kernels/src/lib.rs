@@ -5,8 +5,8 @@
 //! |---|---|
 //! | [`VISIBILITY`](kernels::VISIBILITY) | finds what a camera sees, and writes a G-buffer |
 //! | [`REFERENCE`](kernels::REFERENCE) | integrates the true BRDF over the lights by Monte Carlo |
-//! | [`EVAL`](kernels::EVAL), [`EVAL_SHAPES`](kernels::EVAL_SHAPES) | shade a list of points by the shade
-//! kernel's functions |
+//! | [`REFERENCE_MEDIUM`](kernels::REFERENCE_MEDIUM) | puts a medium before a picture by Monte Carlo |
+//! | [`EVAL`](kernels::EVAL), [`EVAL_SHAPES`](kernels::EVAL_SHAPES) | shade a list of points by the shade kernel's functions |
 //! | [`EVAL_MEDIUM`](kernels::EVAL_MEDIUM) | the same for points in a medium |
 //!
 //! | module | holds |

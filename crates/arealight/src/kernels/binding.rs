@@ -51,7 +51,7 @@ pub(super) fn content(name: &str) -> &'static str {
 }
 
 /// What bindings hold that are no planes.
-const BOUND: [(&str, &str); 19] = [
+const BOUND: [(&str, &str); 21] = [
     (
         "table_image",
         "LightTable::texels: 2D array, layer 0 matrix, layer 1 magnitudes, layer 2 Schlick's matrix, layers 3 \
@@ -102,6 +102,16 @@ const BOUND: [(&str, &str); 19] = [
         "shadow_history",
         "plan::shadow_history_size bytes, zeros before the first frame; used only with \
          ShadowOptions::history, else bind any buffer",
+    ),
+    (
+        "froxels",
+        "3D, a texel a froxel: what is scattered per unit of length and the extinction, then the sum from the \
+         camera on and what is let through (rgba16f)",
+    ),
+    (
+        "medium_image",
+        "3D, a texel a froxel: scattering coefficients in rgb, extinction in a; read only with \
+         MediumOptions::by_image, else bind any sampled image",
     ),
     ("source", "the image: linear light or sRGB, in any format that is sampled as numbers (not integers)"),
     ("finer_level", "the level before, every layer (rgba16f)"),

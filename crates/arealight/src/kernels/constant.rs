@@ -44,3 +44,9 @@ pub const VIEW: u32 = 19;
 pub const LIGHT_COUNTS: u32 = 20;
 /// [`crate::plan::ShadeOptions::samples`].
 pub const SAMPLES: u32 = 21;
+/// [`crate::plan::MediumRays`].
+pub const MEDIUM_RAYS: u32 = 22;
+/// [`crate::plan::MediumOptions::by_image`].
+pub const MEDIUM_IMAGE: u32 = 23;
+/// [`crate::plan::MediumOptions::jitter`].
+pub const MEDIUM_JITTER: u32 = 24;

@@ -269,6 +269,46 @@ fn the_reference_s_structures_have_the_same_offsets() {
 }
 
 #[test]
+fn the_constants_of_media_have_the_same_offsets() {
+    let of_pass = layout!(
+        gpu::MediumConstants,
+        position_from_clip,
+        camera,
+        light_count,
+        scattering,
+        extinction,
+        shape_count,
+        quad_count,
+        seed,
+        anisotropy,
+        columns_rows,
+        slices,
+        nearest,
+        farthest,
+    );
+    for kernel in kernels::MEDIUM_PASS {
+        assert_offsets(&module(kernel), "MediumConstants", &of_pass);
+    }
+    let of_reference = layout!(
+        tool::gpu::MediumReferenceConstants,
+        position_from_clip,
+        camera,
+        light_count,
+        scattering,
+        extinction,
+        shape_count,
+        first_sample,
+        sample_count,
+        weight,
+        anisotropy,
+        farthest,
+        seed,
+        reserved,
+    );
+    assert_offsets(&module(&tool::kernels::REFERENCE_MEDIUM), "MediumReferenceConstants", &of_reference);
+}
+
+#[test]
 fn shapes_have_the_same_offsets() {
     let shape = layout!(gpu::GpuShape, radiance, kind, center, radius, axis_u, detail, axis_v, flags);
     for kernel in [&kernels::SHADE, &tool::kernels::EVAL_SHAPES, &tool::kernels::REFERENCE] {

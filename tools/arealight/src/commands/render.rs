@@ -11,7 +11,9 @@ use crate::picture::{Exposure, Picture};
 use crate::quality::QualityArguments;
 use crate::shadows::Shadows;
 use arealight::Effects;
+use arealight_engine::Fog;
 use arealight_scene::{Camera, Scene};
+use glam::Vec3;
 use serde_json::json;
 use shading::{Outcome, render};
 use std::collections::BTreeMap;
@@ -69,16 +71,59 @@ pub struct Arguments {
     /// Go on with rounds of shadow rays until their noise, in levels of 255 as the screen shows the means of
     /// 4 x 4 pixels, is below LEVELS; at most 64 rounds [default: one round]
     #[arg(long, value_name = "LEVELS", value_parser = parse_levels,
-        conflicts_with_all = ["tiles", "reference"])]
+        conflicts_with_all = ["tiles", "reference", "fog"])]
     shadow_noise: Option<f64>,
     /// Other random numbers, for the frames of a film
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u32,
     #[command(flatten)]
+    fog: FogArguments,
+    #[command(flatten)]
     quality: QualityArguments,
     /// Print the summary as JSON
     #[arg(long, help_heading = None)]
     json: bool,
+}
+
+/// A medium before the picture.
+#[derive(clap::Args)]
+struct FogArguments {
+    /// Fog: extinction per unit of length. Its froxels are four pixels wide and high, in 64 slices
+    #[arg(long, value_name = "DENSITY", value_parser = parse_density)]
+    fog: Option<f32>,
+    /// Of fog, the mean cosine of the angle by which it turns light: above 0 forwards
+    #[arg(long, value_name = "G", default_value_t = 0.0, requires = "fog", allow_negative_numbers = true,
+        value_parser = parse_anisotropy)]
+    anisotropy: f32,
+    /// Of fog, what it scatters of what it takes away
+    #[arg(long, value_name = "PART", default_value_t = 1.0, requires = "fog", value_parser = parse_albedo)]
+    fog_albedo: f32,
+}
+
+impl FogArguments {
+    /// The fog in a scene of this size: it ends beyond the scene.
+    fn of(&self, scene: &Scene, camera: &Camera) -> Option<Fog> {
+        let density = self.fog?;
+        let corners = scene.triangles.iter().flat_map(|triangle| triangle.positions);
+        let farthest = corners.map(|corner| corner.distance(camera.position)).fold(1e-3, f64::max) as f32;
+        let albedo = Vec3::splat(self.fog_albedo);
+        Some(Fog { density, albedo, anisotropy: self.anisotropy, farthest })
+    }
+}
+
+fn parse_density(text: &str) -> Result<f32, String> {
+    let density = text.parse().ok().filter(|density: &f32| density.is_finite() && *density >= 0.0);
+    density.ok_or_else(|| "must be a number from 0 on".to_owned())
+}
+
+fn parse_anisotropy(text: &str) -> Result<f32, String> {
+    let g = text.parse().ok().filter(|g: &f32| g.abs() < 1.0);
+    g.ok_or_else(|| "must be a number between -1 and 1".to_owned())
+}
+
+fn parse_albedo(text: &str) -> Result<f32, String> {
+    let albedo = text.parse().ok().filter(|albedo| (0.0..=1.0).contains(albedo));
+    albedo.ok_or_else(|| "must be a number from 0 to 1".to_owned())
 }
 
 /// Where pictures go that nobody named a place for.
@@ -298,6 +343,9 @@ impl Summary<'_> {
         if let Some(text) = outcome.rounds_text(arguments.shadow_level(), arguments.supersample.pow(2)) {
             lines.push(text);
         }
+        if let Some(fog) = outcome.fog {
+            lines.push(format!("fog      {}", milliseconds(Some(fog))));
+        }
         if let Some(tiles) = &outcome.tiles {
             let classes: Vec<_> =
                 tiles.classes.iter().map(|(class, count)| format!("{count} {class}")).collect();
@@ -343,6 +391,7 @@ impl Summary<'_> {
             })),
             "shadow_rays": outcome.rays(arguments.shadow_level(), arguments.supersample.pow(2)),
             "shadow_noise": outcome.noise,
+            "fog_seconds": seconds(outcome.fog),
             "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },
             "seconds": phases.to_json(),
             "picture": output,

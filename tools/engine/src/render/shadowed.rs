@@ -79,7 +79,7 @@ impl ShadowedView {
 
 /// What of a scene blocks light: every triangle but those of lamps, which would hide the lights that they
 /// are. Those that are not all there have as their number one more than their index in the scene.
-fn blockers(scene: &SceneBuffers) -> Result<Blockers, BufferError> {
+pub(super) fn blockers(scene: &SceneBuffers) -> Result<Blockers, BufferError> {
     let numbered = (1..).zip(&scene.triangles);
     let shown: Vec<_> = numbered.filter(|(_, triangle)| triangle.flags & GpuTriangle::LAMP == 0).collect();
     let vertices = |(_, t): &(u32, &GpuTriangle)| [t.p0, t.p1, t.p2].map(Vec3::from_array);

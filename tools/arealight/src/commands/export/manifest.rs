@@ -142,7 +142,7 @@ fn binding(binding: &Binding) -> Value {
 }
 
 fn constant_name(id: u32) -> &'static str {
-    const NAMES: [(u32, &str); 22] = [
+    const NAMES: [(u32, &str); 25] = [
         (constant::EFFECTS, "EFFECTS"),
         (constant::FORM_FACTOR, "FORM_FACTOR"),
         (constant::POSITION_SOURCE, "POSITION_SOURCE"),
@@ -165,6 +165,9 @@ fn constant_name(id: u32) -> &'static str {
         (constant::VIEW, "VIEW"),
         (constant::LIGHT_COUNTS, "LIGHT_COUNTS"),
         (constant::SAMPLES, "SAMPLES"),
+        (constant::MEDIUM_RAYS, "MEDIUM_RAYS"),
+        (constant::MEDIUM_IMAGE, "MEDIUM_IMAGE"),
+        (constant::MEDIUM_JITTER, "MEDIUM_JITTER"),
     ];
     NAMES.iter().find(|(known, _)| *known == id).map_or("unnamed", |(_, name)| name)
 }

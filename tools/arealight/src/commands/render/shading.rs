@@ -8,7 +8,7 @@ use crate::progress;
 use crate::shadows::Shadows;
 use arealight::plan::{Output, ShadeOptions, ShadowHistory, TileOptions};
 use arealight::{Effects, Quality};
-use arealight_engine::{Engine, EngineError, Reference, SceneRenderer, TileCounts};
+use arealight_engine::{Engine, EngineError, Fog, Reference, SceneRenderer, TileCounts};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::{DVec3, Vec3};
 use indicatif::ProgressBar;
@@ -18,6 +18,7 @@ use std::time::Duration;
 pub struct Outcome {
     pub visibility: Option<Duration>,
     pub shading: Option<Duration>,
+    pub fog: Option<Duration>,
     pub tiles: Option<TileCounts>,
     pub picture: Picture,
     /// The exposure that the picture has.
@@ -38,7 +39,7 @@ impl Outcome {
     fn begin([width, height]: [u32; 2]) -> Self {
         let picture = Picture { width, height, pixels: vec![] };
         let none = Some(Duration::ZERO);
-        Self { visibility: none, shading: none, tiles: None, picture, stops: 0.0, rounds: 0, noise: None }
+        Self { visibility: none, shading: none, fog: None, tiles: None, picture, stops: 0.0, rounds: 0, noise: None }
     }
 
     /// Adds the rows of a band below those that are there.
@@ -99,6 +100,7 @@ pub fn render(
     };
     let mut sum = Outcome::begin(size);
     let mut emission = vec![];
+    let fog = arguments.fog.of(scene, camera);
     for (index, band) in bands.iter().enumerate() {
         let in_band = band.size(size[0]);
         let camera = band.camera(whole, size[1]);
@@ -111,6 +113,10 @@ pub fn render(
             arguments.seed.wrapping_mul(MOST_BANDS).wrapping_add(index as u32).wrapping_mul(MOST_ROUNDS);
         let view = View { surfaces, quality, seed, light_count: scene.lights.len() };
         let (mut shading, tiles) = shade(&mut renderer, &buffers, &view, arguments, &bar)?;
+        if let Some(fog) = &fog {
+            let took = add_fog(&mut renderer, &buffers, (fog, in_band, seed), arguments)?;
+            sum.fog = took.map(|took| sum.fog.unwrap_or_default() + took);
+        }
         let mut found = colors(&mut renderer)?;
         if let Some(rounds) = Rounds::of(arguments, in_band[0]) {
             let (means, took) = rounds.go_on(&mut renderer, &buffers, &view, (&lamps, &found), &bar)?;
@@ -132,6 +138,22 @@ pub fn render(
         Exposure::Stops(stops) => stops,
     };
     Ok(sum)
+}
+
+/// Puts a fog before what a renderer shaded, as the arguments say.
+fn add_fog(
+    renderer: &mut SceneRenderer<'_>,
+    scene: &SceneBuffers,
+    (fog, size, seed): (&Fog, [u32; 2], u32),
+    arguments: &Arguments,
+) -> Result<Option<Duration>, EngineError> {
+    let shadows = arguments.shadow_level() != Shadows::Off;
+    if let Some(samples) = arguments.reference {
+        let samples = arguments.samples_a_subpixel(samples);
+        return renderer.fog_reference(fog, samples, (shadows, seed), |_| ());
+    }
+    let [columns, rows] = size.map(|side| side.div_ceil(4 * arguments.supersample));
+    renderer.add_fog(scene, fog, [columns, rows, 64], (shadows, seed))
 }
 
 /// The radiance of each sample.

@@ -1,0 +1,78 @@
+//! A medium before pictures: froxels against Monte Carlo.
+
+use arealight::plan::{Output, ShadeOptions};
+use arealight_engine::{Fog, SceneRenderer};
+use arealight_scene::{Scene, SceneBuffers};
+use arealight_tests::TestEngine;
+use arealight_tests::frame::scene;
+use glam::{Vec3, Vec4};
+
+const SIZE: [u32; 2] = [64, 36];
+const FROXELS: [u32; 3] = [32, 18, 64];
+
+const FOG: Fog = Fog { density: 0.15, albedo: Vec3::ONE, anisotropy: 0.5, farthest: 14.0 };
+
+/// The picture of a scene's lamps, with what `act` adds before.
+fn picture(
+    engine: &TestEngine,
+    scene: &Scene,
+    act: impl FnOnce(&mut SceneRenderer<'_>, &SceneBuffers),
+) -> Vec<Vec4> {
+    let camera = scene.camera(None, 16.0 / 9.0).unwrap();
+    let buffers = SceneBuffers::new(scene, camera.position).unwrap();
+    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
+    let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, SIZE).unwrap();
+    renderer.shade_as(ShadeOptions { output: Output::Add, ..ShadeOptions::default() }).unwrap();
+    act(&mut renderer, &buffers);
+    renderer.radiance().unwrap()
+}
+
+/// RMSE over mean of pixels that show no lamp.
+fn difference(clear: &[Vec4], found: &[Vec4], truth: &[Vec4]) -> f32 {
+    let (mut square, mut mean) = (0.0, 0.0);
+    for ((_, found), truth) in clear.iter().zip(found).zip(truth).filter(|((c, _), _)| c.x < 4.0) {
+        square += (found.truncate() - truth.truncate()).length_squared();
+        mean += truth.truncate().element_sum();
+    }
+    let count = 3.0 * clear.iter().filter(|c| c.x < 4.0).count() as f32;
+    (square / count).sqrt() / (mean / count)
+}
+
+#[test]
+fn froxels_are_near_to_monte_carlo() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = scene("slats.glb");
+    let clear = picture(&engine, &scene, |_, _| ());
+    let fogged = |fog: Fog, shadows: bool| {
+        picture(&engine, &scene, |r, s| _ = r.add_fog(s, &fog, FROXELS, (shadows, 1)).unwrap())
+    };
+    // Without shadows the froxels' size and the samples' noise are left; with them a ray a froxel and light
+    for (shadows, samples, bound) in [(false, 128, 0.05), (true, 128, 0.1)] {
+        let truth = picture(&engine, &scene, |r, _| {
+            _ = r.fog_reference(&FOG, samples, (shadows, 0), |_| ()).unwrap()
+        });
+        let error = difference(&clear, &fogged(FOG, shadows), &truth);
+        // The twins: light that goes on the other way, and the other kind of shadows
+        let turned = difference(&clear, &fogged(Fog { anisotropy: -0.5, ..FOG }, shadows), &truth);
+        let other = difference(&clear, &fogged(FOG, !shadows), &truth);
+        println!("shadows {shadows}: {error:.3}; turned {turned:.3}, other shadows {other:.3}");
+        assert!(error < bound, "{error}");
+        assert!(turned > 2.0 * bound && other > 2.0 * bound, "{turned}, {other}");
+    }
+}
+
+#[test]
+fn no_fog_changes_nothing_and_much_of_it_gives_numbers() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = scene("slats.glb");
+    let clear = picture(&engine, &scene, |_, _| ());
+    let with =
+        |fog: Fog| picture(&engine, &scene, |r, s| _ = r.add_fog(s, &fog, [5, 3, 7], (true, 0)).unwrap());
+    assert_eq!(with(Fog { density: 0.0, ..FOG }), clear);
+    for density in [1e-6, 1e3, 1e30] {
+        for anisotropy in [0.0, 0.99, -0.99] {
+            let found = with(Fog { density, anisotropy, ..FOG });
+            assert!(found.iter().all(|texel| texel.is_finite() && texel.min_element() >= 0.0), "{density}");
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! A medium before what was shaded, by froxels and by Monte Carlo.
+
+use super::shadowed::blockers;
+use crate::host::{ImageDescription, Usage};
+use crate::{EngineError, Kept, SceneRenderer};
+use arealight::plan::{MediumOptions, MediumRays};
+use arealight_scene::SceneBuffers;
+use arealight_tool_kernels::gpu::MediumReferenceConstants;
+use arealight_tool_kernels::kernels::{REFERENCE_MEDIUM, SHADOWS};
+use arealight_vk::{BlockerResources, MediumFrame, MediumPass, MediumPassInfo, MediumResources, Resource};
+use ash::vk;
+use glam::Vec3;
+use std::time::Duration;
+
+/// An even medium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fog {
+    /// Extinction per unit of length.
+    pub density: f32,
+    /// What is scattered of what is taken away, a channel: in [0, 1].
+    pub albedo: Vec3,
+    /// Henyey and Greenstein's g.
+    pub anisotropy: f32,
+    /// Where it ends.
+    pub farthest: f32,
+}
+
+impl SceneRenderer<'_> {
+    /// Puts a fog before the picture, by `froxels` across, down and away. With shadows each froxel has a ray
+    /// for each light, and everything blocks as a whole.
+    ///
+    /// # Errors
+    /// [`EngineError`] says why the device fails.
+    pub fn add_fog(
+        &mut self,
+        scene: &SceneBuffers,
+        fog: &Fog,
+        froxels: [u32; 3],
+        (shadows, seed): (bool, u32),
+    ) -> Result<Option<Duration>, EngineError> {
+        self.ensure_visible()?;
+        let (engine, host) = (self.engine, self.engine.host());
+        let rays = if shadows { MediumRays::ALight } else { MediumRays::Off };
+        // doc: pass
+        let options = MediumOptions { rays, ..MediumOptions::default() };
+        let info = MediumPassInfo { options, ..MediumPassInfo::default() };
+        // SAFETY: The pass is dropped when no frame uses it, before the device.
+        let pass = unsafe { MediumPass::new(engine.context(), info) }?;
+        // doc end
+        let pass = Kept::new(host, pass);
+        let [width, height, depth] = froxels;
+        let usage = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED;
+        let (extent, format) = ([width, height], MediumPass::FORMAT);
+        let volume =
+            host.volume(&ImageDescription { name: "froxels", extent, layers: 1, format, usage }, depth)?;
+        let blockers = blockers(scene)?;
+        let buffers = [
+            engine.storage("blocker nodes", &blockers.nodes)?,
+            engine.storage("blocker triangles", &blockers.triangles)?,
+        ];
+        let [nodes, triangles] = buffers.each_ref().map(|buffer| Resource::buffer(buffer.handle()));
+        let blockers = Some(BlockerResources { nodes, triangles });
+        let resources = MediumResources { froxels: Resource::stored(volume.view()), medium: None, blockers };
+        let pool = host.descriptor_pool(1, &pass.pool_sizes(1))?;
+        // SAFETY: The layout is the pass's; the set is new, and the resources live until submissions were
+        // waited for.
+        let set = unsafe {
+            let set = pool.allocate(pass.set_layout())?;
+            pass.write_set(set, &self.shade_resources(arealight::Effects::empty()), &resources)?;
+            set
+        };
+        // doc: frame
+        let frame = MediumFrame {
+            froxels, // 160 x 90 x 64
+            size: self.size,
+            camera: self.camera.position(),
+            position_from_clip: self.camera.position_from_clip(),
+            lights: self.lights,
+            scattering: fog.albedo * fog.density,
+            extinction: fog.density,
+            anisotropy: fog.anisotropy,
+            nearest: fog.farthest / 16.0,
+            farthest: fog.farthest,
+            seed,
+        };
+        // doc end
+        pass.prepare(self.lights)?;
+        host.try_submit_timed(|commands| {
+            volume.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
+            self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
+            // SAFETY: The commands are being recorded outside a render pass; submissions are waited for.
+            Ok(unsafe { pass.record(commands, set, &frame) }?)
+        })
+    }
+
+    /// The same by Monte Carlo, with so many samples a pixel; `progress` is told how many are done.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn fog_reference(
+        &mut self,
+        fog: &Fog,
+        samples: u32,
+        (shadows, seed): (bool, u32),
+        mut progress: impl FnMut(u32),
+    ) -> Result<Option<Duration>, EngineError> {
+        self.ensure_visible()?;
+        let light_sampling = self.engine.storage("light sampling", &self.sampling.lights)?;
+        let light_triangles = self.engine.storage("light triangles", &self.sampling.triangles)?;
+        let resources = self.bound_to(
+            &REFERENCE_MEDIUM,
+            &[("light_sampling", &light_sampling), ("light_triangles", &light_triangles)],
+        );
+        let pass = self.engine.pass(&REFERENCE_MEDIUM, &[(SHADOWS, shadows.into())], &resources)?;
+        let mut total = Some(Duration::ZERO);
+        let mut done = 0;
+        while done < samples {
+            let sample_count = self.samples_a_dispatch(shadows).min(samples - done);
+            let constants = MediumReferenceConstants {
+                position_from_clip: self.camera.position_from_clip().to_cols_array_2d(),
+                camera: self.camera.position().to_array(),
+                light_count: self.lights.light_count,
+                scattering: (fog.albedo * fog.density).to_array(),
+                extinction: fog.density,
+                shape_count: self.lights.shape_count,
+                first_sample: done,
+                sample_count,
+                weight: (f64::from(sample_count) / f64::from(samples)) as f32,
+                anisotropy: fog.anisotropy,
+                farthest: fog.farthest,
+                seed,
+                reserved: 0,
+            };
+            let took = self.engine.host().try_submit_timed(|commands: vk::CommandBuffer| {
+                self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
+                pass.record(commands, &constants, self.items())
+            })?;
+            total = total.zip(took).map(|(total, took)| total + took);
+            done += sample_count;
+            progress(done);
+        }
+        Ok(total)
+    }
+}

@@ -1,0 +1,114 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// The yardstick of media: puts an even one before a picture by Monte Carlo. A sample is a distance along the
+// pixel's ray, drawn as the medium dims it, and of each light a point, from which light comes through the medium
+// and, with shadows, past the scene's triangles. It is scattered once.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#define LIGHTS_BINDING 0
+#define G_BUFFER_BINDING 4
+#define LIGHT_TEXTURES_BINDING 9
+#define SHAPES_BINDING 10
+#define SCENE_BINDING 16
+#define AREALIGHT_LIGHT_TEXTURES 1
+#define AREALIGHT_POLYGONS 1
+#define AREALIGHT_MESHES 1
+#define AREALIGHT_DISKS 1
+#define AREALIGHT_SPHERES 1
+#define AREALIGHT_TUBES 1
+
+// 1: triangles of the scene block light.
+layout(constant_id = 100) const uint SHADOWS = 0u;
+
+#include "polygon_lights.glsl"
+#include "arealight/lobes/phase.glsl"
+#include "scene_blocker.glsl"
+#include "shape_sampling.glsl"
+#include "light_sampling.glsl"
+
+layout(set = 0, binding = G_BUFFER_BINDING) uniform texture2D g_position;
+layout(set = 0, binding = 8, rgba32f) uniform image2D radiance_image;
+
+layout(push_constant, std430) uniform MediumReferenceConstants {
+    mat4 position_from_clip;
+    vec3 camera;
+    uint light_count;
+    vec3 scattering;
+    float extinction;
+    uint shape_count;
+    uint first_sample;
+    uint sample_count;
+    float weight;
+    float anisotropy;
+    float farthest;
+    uint seed;
+    uint reserved;
+} constants;
+
+// What part of the light of a point, `offset` away, arrives.
+float arriving(vec3 position, vec3 offset) {
+    float away = length(offset);
+    bool is_hidden = SHADOWS != 0u
+        && arealight_bridge_blocker(position, arealight_normalize_or(offset, vec3(0.0)), away) < away;
+    return is_hidden ? 0.0 : exp(-constants.extinction * away);
+}
+
+vec3 scattered(vec3 position, vec3 axis, inout RandomState random) {
+    vec3 sum = vec3(0.0);
+    for (uint index = 0u; index < constants.light_count; index++) {
+        ArealightPolygonLight light = load_polygon(lights[index]);
+        ArealightGpuLightSampling sampling = light_sampling[index];
+        if (sampling.triangle_count == 0u) {
+            continue;
+        }
+        LightPoint point = sample_point(sampling, random);
+        vec3 offset = point.offset + (light.center - position);
+        float density = light_density(light, sampling.area, point.normal, offset, position);
+        if (density > 0.0) {
+            float phase = arealight_henyey_greenstein(constants.anisotropy, dot(axis, normalize(offset)));
+            sum += light_radiance(index, light, point, offset) * (phase * arriving(position, offset) / density);
+        }
+    }
+    for (uint index = 0u; index < constants.shape_count; index++) {
+        ArealightGpuShape shape = shapes[index];
+        ShapeSample drawn = sample_shape(shape, position, random);
+        if (drawn.density > 0.0) {
+            float phase = arealight_henyey_greenstein(constants.anisotropy, dot(axis, normalize(drawn.offset)));
+            vec3 color = shape.radiance * shape_color(shape, position, drawn.offset);
+            sum += color * (phase * arriving(position, drawn.offset) / drawn.density);
+        }
+    }
+    return sum;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 size = imageSize(radiance_image);
+    if (any(greaterThanEqual(pixel, size))) {
+        return;
+    }
+    vec2 clip = (vec2(pixel) + 0.5) / vec2(size) * 2.0 - 1.0;
+    vec4 homogeneous = constants.position_from_clip * vec4(clip, 0.5, 1.0);
+    vec3 away = normalize(homogeneous.xyz / homogeneous.w - constants.camera);
+    vec4 seen = texelFetch(g_position, pixel, 0);
+    float end = seen.w != 0.0 ? min(distance(seen.xyz, constants.camera), constants.farthest) : constants.farthest;
+    float let_through = exp(-constants.extinction * end);
+    vec3 sum = vec3(0.0);
+    for (uint index = 0u; index < constants.sample_count; index++) {
+        RandomState random = random_begin(uvec3(pixel, constants.first_sample + index), constants.seed);
+        // A stratum of the part that is not let through
+        float place = fract(random_float(random) + 0.618033989 * float(constants.first_sample + index));
+        float t = constants.extinction > 0.0
+            ? -log(1.0 - place * (1.0 - let_through)) / constants.extinction : place * end;
+        sum += scattered(constants.camera + t * away, away, random);
+    }
+    float length = constants.extinction > 0.0 ? (1.0 - let_through) / constants.extinction : end;
+    vec4 before = imageLoad(radiance_image, pixel);
+    vec3 radiance = constants.first_sample == 0u ? before.rgb * let_through : before.rgb;
+    vec3 mean = sum / float(max(constants.sample_count, 1u));
+    imageStore(radiance_image, pixel, vec4(radiance + constants.scattering * length * mean * constants.weight,
+                                           before.a));
+}
