@@ -42,7 +42,8 @@ void main() {
     float away = hit ? min(distance(position, constants.camera), constants.farthest) : constants.farthest;
     float slice = distance_slice(away) - 1.0;
     // Between the middles of four columns
-    vec2 place = clamp((vec2(pixel) + 0.5) / vec2(size) * vec2(counts.xy) - 0.5, vec2(0.0), vec2(counts.xy - 1));
+    vec2 columns = (vec2(pixel) + 0.5) / vec2(size) * vec2(counts.xy);
+    vec2 place = clamp(columns - 0.5, vec2(0.0), vec2(counts.xy - 1));
     ivec2 low = ivec2(place);
     ivec2 high = min(low + 1, counts.xy - 1);
     vec2 part = place - vec2(low);
@@ -50,5 +51,6 @@ void main() {
                       mix(summed_between(ivec2(low.x, high.y), slice), summed_between(high, slice), part.x),
                       part.y);
     vec4 before = imageLoad(radiance_image, pixel);
-    imageStore(radiance_image, pixel, vec4(output_texel(before.rgb * medium.a + medium.rgb, true, 1.0).rgb, before.a));
+    vec3 after = before.rgb * medium.a + medium.rgb;
+    imageStore(radiance_image, pixel, vec4(output_texel(after, true, 1.0).rgb, before.a));
 }

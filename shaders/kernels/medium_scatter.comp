@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// What a medium scatters towards the camera once, of every light: an invocation per froxel, at a distance that
-// is drawn within it from frame to frame or in its middle. What blocks light is asked by rays, each over a
-// light: one for the light that scatters most, drawn by how much each does; or one for each.
+// What a medium scatters towards the camera once, of every light: an invocation per froxel, at a distance
+// that is drawn within it from frame to frame or in its middle, or at several. What blocks light is asked by rays:
+// one over a light, drawn by how much of each is scattered, or one over each light.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -15,6 +15,7 @@ layout(constant_id = 11) const bool HAS_QUADS = true;
 layout(constant_id = 22) const int MEDIUM_RAYS = 0;
 layout(constant_id = 23) const bool MEDIUM_IMAGE = false;
 layout(constant_id = 24) const bool MEDIUM_JITTER = false;
+layout(constant_id = 25) const uint MEDIUM_SAMPLES = 1u;
 const int HORIZON = 0;
 const int SPECULAR_LOBES = 0;
 const int LOBES = 0;
@@ -28,6 +29,7 @@ const int RAY_A_LIGHT = 2;
 #include "effects.glsl"
 #include "polygon_lights.glsl"
 #include "round_lights.glsl"
+#include "scattered_light.glsl"
 #include "arealight/shadows/ray_origin.glsl"
 #include "arealight/shadows/sequence.glsl"
 #include "pick_bits.glsl"
@@ -40,15 +42,17 @@ layout(set = 0, binding = MEDIUM_BINDING) uniform texture3D medium_image;
 
 struct Scattered {
     float extinction; // at the froxel
+    uvec2 column;
+    uint ray; // of the column
     vec3 sum;
-    uint pick;     // the light of the froxel's ray
+    uint pick;     // the light of the sample's ray
     float weights; // of those that came
     float random;
 };
 
 // What part of a light arrives by one ray, which is drawn over it as a cosine towards its center sees it.
-float ray_arrives(uint pick, ArealightPoint point, vec2 random) {
-    PickedLight light = picked_light(pick, point.position);
+float ray_arrives(uint pick, vec3 position, vec2 random) {
+    PickedLight light = picked_light(pick, position);
     mat3 to_light = arealight_frame_matrix(arealight_surface_frame(light.center, light.center));
     ArealightShadowOutline outline = chosen_outline(light, to_light, random.x);
     ArealightShadowRay ray;
@@ -56,58 +60,82 @@ float ray_arrives(uint pick, ArealightPoint point, vec2 random) {
         return 1.0;
     }
     float end = ray.distance * AREALIGHT_RAY_PART;
-    return arealight_bridge_blocker(point.position, ray.direction, end) < end ? 0.0 : 1.0;
+    return arealight_bridge_blocker(position, ray.direction, end) < end ? 0.0 : 1.0;
 }
 
 // Adds what is scattered of the light of an index, of PICK_SHAPE or 0.
 //
 // On its way to the froxel it is dimmed as on that from its center, by a medium that is as here.
-void add_scattered(inout Scattered scattered, ArealightMediumPoint medium, ivec3 froxel, uint index, vec3 center,
+void add_scattered(inout Scattered scattered, ArealightMediumPoint medium, uint index, vec3 center,
                    vec3 light) {
-    light *= exp(-scattered.extinction * distance(center, medium.point.position));
+    vec3 position = medium.point.position;
+    light *= exp(-scattered.extinction * distance(center, position));
     float weight = arealight_luminance(light);
     if (!(weight > 0.0)) {
         return;
     }
 #if AREALIGHT_HOST_VISIBILITY
-    light *= arealight_bridge_visibility(froxel.xy, medium.point.position, index & PICK_INDEX,
+    light *= arealight_bridge_visibility(ivec2(scattered.column), position, index & PICK_INDEX,
                                          (index & PICK_SHAPE) != 0u);
 #endif
     if (MEDIUM_RAYS == RAY_A_LIGHT) {
-        uint ray = constants.seed * constants.slices + uint(froxel.z);
-        light *= ray_arrives(index, medium.point, arealight_sequence_2d(uvec2(froxel.xy), ray + 7919u * index));
+        vec2 random = arealight_sequence_2d(scattered.column, scattered.ray + 7919u * index);
+        light *= ray_arrives(index, position, random);
     }
     if (MEDIUM_RAYS == RAY_A_FROXEL) {
-        scattered.pick = arealight_choose(scattered.random, scattered.weights, weight) ? index : scattered.pick;
+        bool is_chosen = arealight_choose(scattered.random, scattered.weights, weight);
+        scattered.pick = is_chosen ? index : scattered.pick;
     }
     scattered.sum += light;
 }
 
-vec3 of_polygon(ArealightMediumPoint medium, ArealightGpuLight record) {
-    if (HAS_PROFILES && (record.flags & LIGHT_PROFILE) != 0u) {
-        return arealight_in_scattered(medium, load_shaped(record));
+// What a point of a medium scatters of every light.
+vec3 all_scattered(Scattered scattered, ArealightMediumPoint medium) {
+    if (HAS_QUADS) {
+        for (uint index = 0u; index < constants.quad_count; index++) {
+            ArealightGpuLight record = lights[index];
+            vec3 light = arealight_in_scattered(medium, load_quad(record));
+            add_scattered(scattered, medium, index, record.center, light);
+        }
     }
-    if (HAS_MESHES && (record.flags & LIGHT_MESH) != 0u) {
-        return arealight_in_scattered(medium, load_mesh(record));
+    if (HAS_POLYGONS) {
+        for (uint index = constants.quad_count; index < constants.light_count; index++) {
+            ArealightGpuLight record = lights[index];
+            add_scattered(scattered, medium, index, record.center, in_scattered(medium, record));
+        }
     }
-    return arealight_in_scattered(medium, load_polygon(record));
+    if (HAS_SHAPES) {
+        for (uint index = 0u; index < constants.shape_count; index++) {
+            ArealightGpuShape record = shapes[index];
+            add_scattered(scattered, medium, PICK_SHAPE | index, record.center, in_scattered(medium, record));
+        }
+    }
+    if (MEDIUM_RAYS == RAY_A_FROXEL && scattered.pick != NO_PICK) {
+        vec2 random = arealight_sequence_2d(scattered.column, scattered.ray);
+        scattered.sum *= ray_arrives(scattered.pick, medium.point.position, random);
+    }
+    return scattered.sum;
 }
 
-vec3 of_shape(ArealightMediumPoint medium, ArealightGpuShape record) {
-    if (HAS_TUBES && record.kind == SHAPE_TUBE) {
-        return arealight_in_scattered(medium, load_tube(record));
-    }
-    if (HAS_SPHERES && record.kind == SHAPE_SPHERE) {
-        return arealight_in_scattered(medium, load_sphere(record));
-    }
-    return HAS_DISKS ? arealight_in_scattered(medium, load_disk(record)) : vec3(0.0);
+// The direction from the camera through a place in the grid's columns.
+vec3 column_direction(vec2 column, ivec3 counts) {
+    vec4 homogeneous = constants.position_from_clip * vec4(column / vec2(counts.xy) * 2.0 - 1.0, 0.5, 1.0);
+    return arealight_normalize_or(homogeneous.xyz / homogeneous.w - constants.camera, vec3(0.0, 0.0, 1.0));
 }
 
-// The position in the middle of a column, at some depth before the camera: all of them are on its ray.
-vec3 column_position(ivec3 froxel, ivec3 counts) {
-    vec2 clip = (vec2(froxel.xy) + 0.5) / vec2(counts.xy) * 2.0 - 1.0;
-    vec4 homogeneous = constants.position_from_clip * vec4(clip, 0.5, 1.0);
-    return homogeneous.xyz / homogeneous.w;
+// A sample of a froxel's: of every light, what the place of that index scatters.
+vec3 sample_scattered(ivec3 froxel, ivec3 counts, uint index, float extinction) {
+    uvec2 column = uvec2(froxel.xy);
+    uint ray = (constants.seed * constants.slices + uint(froxel.z)) * MEDIUM_SAMPLES + index;
+    // Across the column only where there are several
+    vec2 across = MEDIUM_SAMPLES > 1u ? arealight_sequence_2d(column, ray) : vec2(0.5);
+    float along = MEDIUM_JITTER ? arealight_sequence(column, constants.seed) : 0.5;
+    float slice = float(froxel.z) + (float(index) + along) / float(MEDIUM_SAMPLES);
+    vec3 away = column_direction(vec2(column) + across, counts);
+    vec3 position = constants.camera + slice_distance(slice) * away;
+    ArealightMediumPoint medium = arealight_medium_point(position, -away, constants.anisotropy);
+    float random = arealight_sequence(column.yx, ray);
+    return all_scattered(Scattered(extinction, column, ray, vec3(0.0), NO_PICK, 0.0, random), medium);
 }
 
 void main() {
@@ -120,37 +148,13 @@ void main() {
     if (MEDIUM_IMAGE) {
         here = texelFetch(medium_image, froxel, 0);
     }
-    uint ray = constants.seed * constants.slices + uint(froxel.z);
-    float within = MEDIUM_JITTER ? arealight_sequence(uvec2(froxel.xy), constants.seed) : 0.5;
-    vec3 away = arealight_normalize_or(column_position(froxel, counts) - constants.camera, vec3(0.0, 0.0, 1.0));
-    vec3 position = constants.camera + slice_distance(float(froxel.z) + within) * away;
-    Scattered scattered = Scattered(here.a, vec3(0.0), NO_PICK, 0.0, arealight_sequence(uvec2(froxel.yx), ray));
+    vec3 sum = vec3(0.0);
     if (here.rgb != vec3(0.0)) {
-        ArealightMediumPoint medium = arealight_medium_point(position, -away, constants.anisotropy);
-        if (HAS_QUADS) {
-            for (uint index = 0u; index < constants.quad_count; index++) {
-                ArealightGpuLight record = lights[index];
-                add_scattered(scattered, medium, froxel, index, record.center,
-                              arealight_in_scattered(medium, load_quad(record)));
-            }
-        }
-        if (HAS_POLYGONS) {
-            for (uint index = constants.quad_count; index < constants.light_count; index++) {
-                ArealightGpuLight record = lights[index];
-                add_scattered(scattered, medium, froxel, index, record.center, of_polygon(medium, record));
-            }
-        }
-        if (HAS_SHAPES) {
-            for (uint index = 0u; index < constants.shape_count; index++) {
-                ArealightGpuShape record = shapes[index];
-                add_scattered(scattered, medium, froxel, PICK_SHAPE | index, record.center,
-                              of_shape(medium, record));
-            }
-        }
-        if (MEDIUM_RAYS == RAY_A_FROXEL && scattered.pick != NO_PICK) {
-            scattered.sum *= ray_arrives(scattered.pick, medium.point, arealight_sequence_2d(uvec2(froxel.xy), ray));
+        sum = sample_scattered(froxel, counts, 0u, here.a);
+        for (uint index = 1u; MEDIUM_SAMPLES > 1u && index < MEDIUM_SAMPLES; index++) {
+            sum += sample_scattered(froxel, counts, index, here.a);
         }
     }
-    vec3 sum = min(here.rgb * scattered.sum, vec3(65504.0));
+    sum = min(here.rgb * sum / float(MEDIUM_SAMPLES), vec3(65504.0));
     imageStore(froxels, froxel, vec4(sum, clamp(here.a, 0.0, 65504.0)));
 }

@@ -5,7 +5,10 @@
 use crate::ladder::methods::SHADE_YARDSTICK;
 use crate::school::School;
 use arealight::kernels::{self, BindingKind, Kernel};
-use arealight::plan::{self, Output, RadianceFormat, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
+use arealight::plan::{
+    self, MediumOptions, MediumRays, Output, RadianceFormat, ShadeOptions, ShadowFilter, ShadowHistory,
+    TileOptions,
+};
 use arealight::{
     Effects, Footprint, FormFactor, Horizon, LightSummary, Lobes, Quality, SpecularLobes, TileClass,
 };
@@ -233,6 +236,10 @@ fn other_rows() -> Vec<Row> {
         shadow_filter("off", ShadowFilter::Off, ShadowHistory::Off),
         shadow_filter("gather", ShadowFilter::Gather, ShadowHistory::Off),
         shadow_filter("gather, with a history", ShadowFilter::Gather, ShadowHistory::Camera),
+        // Media
+        medium("quads", "no rays", none, MediumRays::Off),
+        medium("quads", "1 ray", none, MediumRays::AFroxel),
+        medium("every kind", "no rays", every_kind, MediumRays::Off),
         // Images of lights
         load("copied", 0),
         load("resampled, sRGB", 3),
@@ -327,6 +334,14 @@ fn shadow_filter(level: &'static str, filter: ShadowFilter, history: ShadowHisto
 
 fn shadowed(surfaces: Effects, shadow_rays: u32) -> ShadeOptions {
     ShadeOptions { surfaces, shadow_rays, ..ShadeOptions::default() }
+}
+
+/// Froxels; `kinds` of lights beside quads.
+fn medium(lights: &'static str, level: &'static str, kinds: Effects, rays: MediumRays) -> Row {
+    let frame = LightSummary { quad_count: 1, effects: kinds, ..LightSummary::default() };
+    let options = MediumOptions { rays, ..MediumOptions::default() };
+    let specialization = plan::medium_scatter_specialization(options, frame);
+    row(&kernels::MEDIUM_SCATTER, lights, level, None, specialization)
 }
 
 /// `kinds`: of lights, and what coats need.

@@ -28,8 +28,8 @@ pub struct MediumPassInfo {
     pub host_set: Option<vk::DescriptorSetLayout>,
 }
 
-/// The host's resources of a medium beyond those of its shade pass, of which it reads the lights and positions,
-/// and dims the radiance.
+/// The host's resources of a medium beyond those of its shade pass, of which it reads the lights and
+/// positions, and dims the radiance.
 #[derive(Debug, Clone, Copy)]
 pub struct MediumResources {
     /// A 3D image of [`MediumPass::FORMAT`] with the usage `STORAGE`, of [`MediumFrame::froxels`]. The pass
@@ -59,8 +59,8 @@ pub struct MediumFrame {
     pub scattering: Vec3,
     /// What is scattered or absorbed per unit of length. From 0.
     pub extinction: f32,
-    /// Henyey and Greenstein's g, the mean cosine of the angle by which light is turned. In (-1, 1); it counts
-    /// up to .95 of either sign.
+    /// Henyey and Greenstein's g, the mean cosine of the angle by which light is turned. In (-1, 1); it
+    /// counts up to .95 of either sign.
     pub anisotropy: f32,
     /// Slices are even up to about this distance, then each is longer by a factor. Above 0.
     pub nearest: f32,
@@ -94,9 +94,9 @@ impl MediumStage {
     }
 }
 
-/// Light that a medium scatters once, before what a [`crate::ShadePass`] shaded: three dispatches over a grid of
-/// froxels. Every light of the frame shines into every froxel: lists of tiles are made for surfaces, and the air
-/// before those has other lights.
+/// Light that a medium scatters once, before what a [`crate::ShadePass`] shaded: three dispatches over a grid
+/// of froxels. Every light of the frame shines into every froxel: lists of tiles are made for surfaces, and
+/// the air before those has other lights.
 #[derive(Debug)]
 pub struct MediumPass {
     stages: [Pipelines; 3],

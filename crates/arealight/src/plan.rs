@@ -300,18 +300,21 @@ pub enum MediumRays {
     /// None: light passes through everything, or the host's module says what arrives.
     #[default]
     Off = 0,
-    /// One a froxel, for a light that is drawn by how much of it is scattered there. For hosts that filter over
-    /// frames.
+    /// One a sample, over a light that is drawn by how much of it is scattered there. For hosts that filter
+    /// over frames.
     AFroxel = 1,
-    /// One a froxel and light.
+    /// One a sample and light.
     ALight = 2,
 }
 
 /// How a medium is shaded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct MediumOptions {
     /// What asks for what blocks light.
     pub rays: MediumRays,
+    /// At how many points of a froxel light is scattered, each with rays of its own. From 1, as which 0
+    /// counts.
+    pub samples: u32,
     /// Whether scattering and extinction come from an image, a texel a froxel; else they are the frame's.
     pub by_image: bool,
     /// Whether a froxel's distance is drawn within it, by the frame's seed; else it is its middle.
@@ -324,6 +327,20 @@ pub struct MediumOptions {
     pub quality: Quality,
 }
 
+impl Default for MediumOptions {
+    fn default() -> Self {
+        Self {
+            rays: MediumRays::Off,
+            samples: 1,
+            by_image: false,
+            jitter: false,
+            from_depth: false,
+            format: RadianceFormat::default(),
+            quality: Quality::default(),
+        }
+    }
+}
+
 /// The values of the constants of [`kernels::MEDIUM_SCATTER`], for a frame's lights.
 pub fn medium_scatter_specialization(options: MediumOptions, lights: LightSummary) -> Vec<(u32, u32)> {
     vec![
@@ -334,6 +351,7 @@ pub fn medium_scatter_specialization(options: MediumOptions, lights: LightSummar
         (kernels::constant::MEDIUM_RAYS, options.rays as u32),
         (kernels::constant::MEDIUM_IMAGE, u32::from(options.by_image)),
         (kernels::constant::MEDIUM_JITTER, u32::from(options.jitter)),
+        (kernels::constant::MEDIUM_SAMPLES, options.samples.max(1)),
     ]
 }
 

@@ -44,7 +44,8 @@ impl MediumPoint {
             (Effects::TUBE, GpuShape::TUBE),
         ];
         let kind = kind.into_iter().find(|(effect, _)| effects.contains(*effect));
-        let counted = effects & (POLYGONAL | Effects::TEXTURED_ELLIPSE | Effects::TWO_SIDED);
+        let of_lights = Effects::ELLIPSE | Effects::SPHERE | Effects::TUBE | Effects::TEXTURED_ELLIPSE;
+        let counted = effects & (POLYGONAL | of_lights | Effects::TWO_SIDED);
         (kind.map_or(plan::POLYGONAL, |(_, kind)| kind), counted)
     }
 }

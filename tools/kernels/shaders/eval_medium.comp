@@ -22,6 +22,7 @@ const int LOBES = 0;
 #include "effects.glsl"
 #include "polygon_lights.glsl"
 #include "round_lights.glsl"
+#include "scattered_light.glsl"
 
 // The light is in the list of polygons and meshes
 const int SHAPE_NONE = 4;
@@ -42,30 +43,6 @@ layout(push_constant, std430) uniform EvalConstants {
     uint case_count;
 } constants;
 
-vec3 radiance_of(ArealightMediumPoint medium, uint index) {
-    if (SHAPE == SHAPE_NONE) {
-        ArealightGpuLight record = lights[index];
-        if (HAS_PROFILES && (record.flags & LIGHT_PROFILE) != 0u) {
-            return arealight_in_scattered(medium, load_shaped(record));
-        }
-        if (HAS_MESHES && (record.flags & LIGHT_MESH) != 0u) {
-            return arealight_in_scattered(medium, load_mesh(record));
-        }
-        if (HAS_POLYGONS) {
-            return arealight_in_scattered(medium, load_polygon(record));
-        }
-        return arealight_in_scattered(medium, load_quad(record));
-    }
-    ArealightGpuShape record = shapes[index];
-    if (SHAPE == int(SHAPE_TUBE)) {
-        return arealight_in_scattered(medium, load_tube(record));
-    }
-    if (SHAPE == int(SHAPE_SPHERE)) {
-        return arealight_in_scattered(medium, load_sphere(record));
-    }
-    return arealight_in_scattered(medium, load_disk(record));
-}
-
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= constants.case_count) {
@@ -73,5 +50,7 @@ void main() {
     }
     ArealightGpuMediumCase given = cases[index];
     ArealightMediumPoint medium = arealight_medium_point(vec3(0.0), given.view, given.anisotropy);
-    results[index] = vec4(radiance_of(medium, index), 0.0);
+    vec3 radiance = SHAPE == SHAPE_NONE ? in_scattered(medium, lights[index])
+                                        : in_scattered(medium, shapes[index]);
+    results[index] = vec4(radiance, 0.0);
 }

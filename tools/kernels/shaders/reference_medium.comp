@@ -3,8 +3,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 // The yardstick of media: puts an even one before a picture by Monte Carlo. A sample is a distance along the
-// pixel's ray, drawn as the medium dims it, and of each light a point, from which light comes through the medium
-// and, with shadows, past the scene's triangles. It is scattered once.
+// pixel's ray, drawn as the medium dims it, and of each light a point, from which light comes through the
+// medium and, with shadows, past the scene's triangles. It is scattered once.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -16,6 +16,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define AREALIGHT_LIGHT_TEXTURES 1
 #define AREALIGHT_POLYGONS 1
 #define AREALIGHT_MESHES 1
+#define AREALIGHT_SHAPED 1
 #define AREALIGHT_DISKS 1
 #define AREALIGHT_SPHERES 1
 #define AREALIGHT_TUBES 1
@@ -69,14 +70,16 @@ vec3 scattered(vec3 position, vec3 axis, inout RandomState random) {
         float density = light_density(light, sampling.area, point.normal, offset, position);
         if (density > 0.0) {
             float phase = arealight_henyey_greenstein(constants.anisotropy, dot(axis, normalize(offset)));
-            sum += light_radiance(index, light, point, offset) * (phase * arriving(position, offset) / density);
+            float weight = phase * arriving(position, offset) / density;
+            sum += light_radiance(index, light, point, offset) * weight;
         }
     }
     for (uint index = 0u; index < constants.shape_count; index++) {
         ArealightGpuShape shape = shapes[index];
         ShapeSample drawn = sample_shape(shape, position, random);
         if (drawn.density > 0.0) {
-            float phase = arealight_henyey_greenstein(constants.anisotropy, dot(axis, normalize(drawn.offset)));
+            float cosine = dot(axis, normalize(drawn.offset));
+            float phase = arealight_henyey_greenstein(constants.anisotropy, cosine);
             vec3 color = shape.radiance * shape_color(shape, position, drawn.offset);
             sum += color * (phase * arriving(position, drawn.offset) / drawn.density);
         }
@@ -94,7 +97,10 @@ void main() {
     vec4 homogeneous = constants.position_from_clip * vec4(clip, 0.5, 1.0);
     vec3 away = normalize(homogeneous.xyz / homogeneous.w - constants.camera);
     vec4 seen = texelFetch(g_position, pixel, 0);
-    float end = seen.w != 0.0 ? min(distance(seen.xyz, constants.camera), constants.farthest) : constants.farthest;
+    float end = constants.farthest;
+    if (seen.w != 0.0) {
+        end = min(end, distance(seen.xyz, constants.camera));
+    }
     float let_through = exp(-constants.extinction * end);
     vec3 sum = vec3(0.0);
     for (uint index = 0u; index < constants.sample_count; index++) {

@@ -50,3 +50,5 @@ pub const MEDIUM_RAYS: u32 = 22;
 pub const MEDIUM_IMAGE: u32 = 23;
 /// [`crate::plan::MediumOptions::jitter`].
 pub const MEDIUM_JITTER: u32 = 24;
+/// Of [`super::MEDIUM_SCATTER`]: [`crate::plan::MediumOptions::samples`].
+pub const MEDIUM_SAMPLES: u32 = 25;

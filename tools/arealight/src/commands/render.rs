@@ -88,7 +88,8 @@ pub struct Arguments {
 /// A medium before the picture.
 #[derive(clap::Args)]
 struct FogArguments {
-    /// Fog: extinction per unit of length. Its froxels are four pixels wide and high, in 64 slices
+    /// Fog: extinction per unit of length. Its froxels are 8 pixels wide and high, in 64 slices, of four
+    /// samples each
     #[arg(long, value_name = "DENSITY", value_parser = parse_density)]
     fog: Option<f32>,
     /// Of fog, the mean cosine of the angle by which it turns light: above 0 forwards

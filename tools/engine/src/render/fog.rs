@@ -26,8 +26,8 @@ pub struct Fog {
 }
 
 impl SceneRenderer<'_> {
-    /// Puts a fog before the picture, by `froxels` across, down and away. With shadows each froxel has a ray
-    /// for each light, and everything blocks as a whole.
+    /// Puts a fog before the picture, by `froxels` across, down and away. Each froxel has so many samples,
+    /// with shadows each of them a ray for each light; everything blocks as a whole.
     ///
     /// # Errors
     /// [`EngineError`] says why the device fails.
@@ -36,13 +36,13 @@ impl SceneRenderer<'_> {
         scene: &SceneBuffers,
         fog: &Fog,
         froxels: [u32; 3],
-        (shadows, seed): (bool, u32),
+        (samples, shadows, seed): (u32, bool, u32),
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
         let (engine, host) = (self.engine, self.engine.host());
         let rays = if shadows { MediumRays::ALight } else { MediumRays::Off };
         // doc: pass
-        let options = MediumOptions { rays, ..MediumOptions::default() };
+        let options = MediumOptions { rays, samples, ..MediumOptions::default() };
         let info = MediumPassInfo { options, ..MediumPassInfo::default() };
         // SAFETY: The pass is dropped when no frame uses it, before the device.
         let pass = unsafe { MediumPass::new(engine.context(), info) }?;

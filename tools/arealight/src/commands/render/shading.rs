@@ -39,7 +39,16 @@ impl Outcome {
     fn begin([width, height]: [u32; 2]) -> Self {
         let picture = Picture { width, height, pixels: vec![] };
         let none = Some(Duration::ZERO);
-        Self { visibility: none, shading: none, fog: None, tiles: None, picture, stops: 0.0, rounds: 0, noise: None }
+        Self {
+            visibility: none,
+            shading: none,
+            fog: None,
+            tiles: None,
+            picture,
+            stops: 0.0,
+            rounds: 0,
+            noise: None,
+        }
     }
 
     /// Adds the rows of a band below those that are there.
@@ -140,6 +149,9 @@ pub fn render(
     Ok(sum)
 }
 
+/// Of a froxel.
+const FOG_SAMPLES: u32 = 4;
+
 /// Puts a fog before what a renderer shaded, as the arguments say.
 fn add_fog(
     renderer: &mut SceneRenderer<'_>,
@@ -152,8 +164,8 @@ fn add_fog(
         let samples = arguments.samples_a_subpixel(samples);
         return renderer.fog_reference(fog, samples, (shadows, seed), |_| ());
     }
-    let [columns, rows] = size.map(|side| side.div_ceil(4 * arguments.supersample));
-    renderer.add_fog(scene, fog, [columns, rows, 64], (shadows, seed))
+    let [columns, rows] = size.map(|side| side.div_ceil(8 * arguments.supersample));
+    renderer.add_fog(scene, fog, [columns, rows, 64], (FOG_SAMPLES, shadows, seed))
 }
 
 /// The radiance of each sample.
