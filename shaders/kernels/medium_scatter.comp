@@ -3,8 +3,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 // What a medium scatters towards the camera once, of every light: an invocation per froxel, at a distance
-// that is drawn within it from frame to frame or in its middle, or at several. What blocks light is asked by rays:
-// one over a light, drawn by how much of each is scattered, or one over each light.
+// that is drawn within it from frame to frame or in its middle, or at several places. What blocks light is
+// asked by rays: one over a light, drawn by how much of each is scattered, or one over each light.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -27,7 +27,7 @@ fn picture(
     renderer.radiance().unwrap()
 }
 
-/// RMSE over mean of the means of 4 x 4 pixels, of which none shows a lamp: the truth's noise is a quarter then.
+/// RMSE over mean of the means of 4 x 4 pixels, of which none shows a lamp: the truth's noise is a quarter.
 fn difference(clear: &[Vec4], found: &[Vec4], truth: &[Vec4]) -> f32 {
     const SIDE: usize = 4;
     let width = SIZE[0] as usize;
