@@ -1,6 +1,7 @@
 //! Progress on the error stream: a bar on a terminal; elsewhere, as in a log, a line now and then; nothing
 //! with `--quiet`.
 
+use crate::failure::Failure;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle, TermLike};
 use std::io::{self, IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -52,6 +53,18 @@ pub fn bar(length: u64, unit: &'static str) -> ProgressBar {
     };
     let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::with_draw_target(Some(length), target).with_style(style)
+}
+
+/// What work on a device finds, under a bar of `length` steps of `unit` that it tells of.
+pub fn of<T, E: std::fmt::Display>(
+    length: u64,
+    unit: &'static str,
+    work: impl FnOnce(&(dyn Fn(u64) + Sync)) -> Result<T, E>,
+) -> Result<T, Failure> {
+    let bar = bar(length, unit);
+    let found = work(&|count| bar.inc(count));
+    bar.finish_and_clear();
+    found.map_err(|error| Failure::Device(error.to_string()))
 }
 
 /// A log that takes a line now and then of those that it is given.

@@ -92,6 +92,18 @@ impl Ends {
         gpu::host(self.device.device.as_deref())
     }
 
+    /// As [`Ends::report`], of a section of a document.
+    fn section(
+        &self,
+        found: &impl Serialize,
+        markers: Markers,
+        section: &str,
+        text: &str,
+    ) -> Result<(), Failure> {
+        let whole = self.markdown.as_deref().map(|path| document(path, markers, section));
+        self.report(found, &whole.unwrap_or_default(), text)
+    }
+
     /// Writes the tables where they were asked for, and prints them, or JSON where that goes to standard
     /// output.
     fn report(&self, found: &impl Serialize, markdown: &str, text: &str) -> Result<(), Failure> {

@@ -23,10 +23,6 @@ fn scene(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name).display().to_string()
 }
 
-fn reference(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/reference").join(name).display().to_string()
-}
-
 fn write(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
     let path = folder.join(name);
     std::fs::write(&path, bytes).expect("the test folder can be written");
@@ -63,34 +59,29 @@ fn help_and_version() {
 fn wrong_arguments_are_exit_code_2() {
     let folder = tempfile::tempdir().unwrap();
     let room = scene("room.glb");
-    refuse(folder.path(), &["render", &room, "--size", "12"], 2, &["--size", "1280x720"]);
-    refuse(folder.path(), &["render", &room, "--reference", "0"], 2, &["--reference"]);
-    refuse(
-        folder.path(),
-        &["render", &room, "--surfaces", "shiny"],
-        2,
-        &["--surfaces", "'shiny' is no effect", "two_sided"],
-    );
-    refuse(folder.path(), &["effects"], 2, &["SCENE"]);
-    refuse(folder.path(), &["render", &room, "-o", "picture.bmp"], 2, &["picture.bmp", ".png or .exr"]);
-    refuse(folder.path(), &["render", &room, "--camera", "nobody"], 2, &["--camera", "nobody"]);
-    refuse(folder.path(), &["paint"], 2, &["paint"]);
-    refuse(folder.path(), &["inspect", "--f0", "2"], 2, &["--f0", "0 to 1"]);
-    refuse(folder.path(), &["inspect", "--specular-lobes", "none"], 2, &["--specular-lobes", "one", "two"]);
-    refuse(folder.path(), &["inspect", "--entries"], 2, &["--output"]);
-    refuse(
-        folder.path(),
-        &["inspect", "--entries", "-o", "a.png", "--errors"],
-        2,
-        &["--errors", "--entries"],
-    );
-    refuse(folder.path(), &["inspect", "--quads", "9"], 2, &["--errors"]);
-    refuse(folder.path(), &["inspect", "--errors", "--quads", "2"], 2, &["--quads", "3..=3000"]);
-    refuse(folder.path(), &["inspect", "--layer", "1"], 2, &["--pyramid"]);
-    refuse(folder.path(), &["inspect", "--pyramid", "a.png", "--entries", "-o", "b.png"], 2, &["--entries"]);
-    refuse(folder.path(), &["inspect", "--pyramid", "a.png", "--layer", "1"], 2, &["--layer", "one texture"]);
     let screen = scene("screen.glb");
-    refuse(folder.path(), &["inspect", "--pyramid", &screen, "--layer", "2"], 2, &["--layer", "from 0 to 1"]);
+    for (arguments, words) in [
+        (&["render", &room, "--size", "12"][..], &["--size", "1280x720"][..]),
+        (&["render", &room, "--reference", "0"], &["--reference"]),
+        (&["render", &room, "--surfaces", "shiny"], &["--surfaces", "'shiny' is no effect", "two_sided"]),
+        (&["render", &screen, "--surfaces", "tube"], &["--surfaces", "tube depends on the lights"]),
+        (&["effects"], &["SCENE"]),
+        (&["render", &room, "--camera", "nobody"], &["--camera", "nobody"]),
+        (&["paint"], &["paint"]),
+        (&["-q", "-v", "devices"], &["--quiet", "--verbose"]),
+        (&["inspect", "--f0", "2"], &["--f0", "0 to 1"]),
+        (&["inspect", "--specular-lobes", "none"], &["--specular-lobes", "one", "two"]),
+        (&["inspect", "--entries"], &["--output"]),
+        (&["inspect", "--entries", "-o", "a.png", "--errors"], &["--errors", "--entries"]),
+        (&["inspect", "--quads", "9"], &["--errors"]),
+        (&["inspect", "--errors", "--quads", "2"], &["--quads", "3..=3000"]),
+        (&["inspect", "--layer", "1"], &["--pyramid"]),
+        (&["inspect", "--pyramid", "a.png", "--entries", "-o", "b.png"], &["--entries"]),
+        (&["inspect", "--pyramid", "a.png", "--layer", "1"], &["--layer", "one texture"]),
+        (&["inspect", "--pyramid", &screen, "--layer", "2"], &["--layer", "from 0 to 1"]),
+    ] {
+        refuse(folder.path(), arguments, 2, words);
+    }
 }
 
 #[test]
@@ -259,16 +250,6 @@ fn devices_that_are_not_there_are_exit_code_4() {
 }
 
 #[test]
-fn pictures_that_cannot_be_written_are_exit_code_5() {
-    let folder = tempfile::tempdir().unwrap();
-    if !device() {
-        return;
-    }
-    write(folder.path(), "file", "in the way");
-    refuse(folder.path(), &["render", &scene("room.glb"), "-o", "file/picture.png"], 5, &["file"]);
-}
-
-#[test]
 fn a_scene_without_lights_or_triangles_is_rendered_with_a_warning() {
     let folder = tempfile::tempdir().unwrap();
     if !device() {
@@ -316,12 +297,6 @@ fn a_stated_set_that_a_surface_needs_more_than_is_said() {
         let expected = format!("surfaces {}", surfaces.replace(',', ", "));
         assert!(text(&output.stdout).contains(&expected), "{}", text(&output.stdout));
     }
-    refuse(
-        folder.path(),
-        &["render", &screen, "--surfaces", "tube"],
-        2,
-        &["--surfaces", "tube depends on the lights"],
-    );
 }
 
 #[test]
@@ -379,56 +354,6 @@ fn shadows_go_on_until_their_noise_is_low() {
     refuse(folder.path(), &["render", "--shadow-noise", "0"], 2, &["--shadow-noise", "above 0"]);
 }
 
-#[test]
-fn eval_answers_in_order_with_reasons_and_measures() {
-    let folder = tempfile::tempdir().unwrap();
-    if !device() {
-        return;
-    }
-    let (cases, truth) = (reference("cases.json"), reference("truth.json"));
-    let evaluate = |on: &str| {
-        let name = format!("{on}.json");
-        let output = run(folder.path(), &["eval", &cases, "-o", &name, "--on", on, "--against", &truth]);
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        let answers = std::fs::read(folder.path().join(name)).unwrap();
-        let answers: serde_json::Value = serde_json::from_slice(&answers).unwrap();
-        (text(&output.stdout), answers["results"].as_array().unwrap().clone())
-    };
-    let (said, gpu) = evaluate("gpu");
-    assert!(said.contains("polygon"), "a family a line: {said}");
-    let (_, oracle) = evaluate("oracle");
-    let given: serde_json::Value = serde_json::from_slice(&std::fs::read(&cases).unwrap()).unwrap();
-    let given = given["cases"].as_array().unwrap();
-    assert_eq!(gpu.len(), given.len());
-    let mut answered = 0;
-    for ((case, gpu), oracle) in given.iter().zip(&gpu).zip(&oracle) {
-        assert_eq!(case["name"], gpu["name"]);
-        let Some(radiance) = gpu["radiance"].as_array() else {
-            assert!(gpu["reason"].as_str().is_some_and(|reason| !reason.is_empty()), "{gpu}");
-            continue;
-        };
-        // A lookup of an image is an approximation of what the oracle integrates
-        if case["light"].get("texture").is_some() {
-            continue;
-        }
-        answered += 1;
-        let numbers = |value: &serde_json::Value| -> Vec<f64> {
-            value.as_array().unwrap().iter().filter_map(serde_json::Value::as_f64).collect()
-        };
-        let (radiance, oracle) = (numbers(&radiance.clone().into()), numbers(&oracle["radiance"]));
-        let emitted = numbers(&case["light"]["radiance"]);
-        let largest = oracle.iter().copied().fold(0.0, f64::max);
-        for channel in 0..3 {
-            // 1e-4 of the answer; in a lobe's far tail what the form factor may lose, 1e-6 of the light
-            let bound = 1e-4 * largest + 1e-6 * emitted[channel];
-            let difference = (radiance[channel] - oracle[channel]).abs();
-            assert!(difference <= bound, "{}: {radiance:?} {oracle:?}", case["name"]);
-        }
-    }
-    assert_eq!(answered, 160, "untextured lights of every shape are answered");
-}
-
-#[test]
 fn pictures_are_compared() {
     let folder = tempfile::tempdir().unwrap();
     let picture = |name: &str, size: usize, value: f32| {
@@ -480,16 +405,8 @@ fn verdicts_have_colours_where_they_are_wanted_and_tables_with_verbose() {
     let folder = tempfile::tempdir().unwrap();
     let run = |arguments: &[&str], environment: &[(&str, &str)]| {
         Command::new(env!("CARGO_BIN_EXE_arealight"))
-            .args([
-                "bench",
-                "stability",
-                "--samples",
-                "4",
-                "--family",
-                "crossing",
-                "--level",
-                "polygon-exact",
-            ])
+            .args(["bench", "stability", "--samples", "4", "--family", "crossing"])
+            .args(["--level", "polygon-exact"])
             .args(arguments)
             .env_remove("NO_COLOR")
             .envs(environment.iter().copied())
@@ -509,5 +426,4 @@ fn verdicts_have_colours_where_they_are_wanted_and_tables_with_verbose() {
     let verbose = run(&["--verbose"], &[]);
     assert!(text(&verbose.stdout).contains("  crossing "), "{}", text(&verbose.stdout));
     assert!(text(&verbose.stderr).contains("device: "), "{}", text(&verbose.stderr));
-    refuse(folder.path(), &["-q", "-v", "devices"], 2, &["--quiet", "--verbose"]);
 }

@@ -35,6 +35,19 @@ fn device() -> bool {
     arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_some()
 }
 
+/// The methods that can be run here: without a device not the GPU's.
+fn methods<T>(all: impl IntoIterator<Item = T>, name: impl Fn(&T) -> &str) -> impl Iterator<Item = T> {
+    let device = device();
+    all.into_iter().filter(move |one| device || name(one) != "gpu")
+}
+
+/// What `eval --json` says of the measures, of answers that must be given.
+fn measures(arguments: &[&str]) -> Value {
+    let output = precisely(&[arguments, &["--json"]].concat());
+    assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
 fn json(path: impl AsRef<Path>) -> Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
@@ -95,41 +108,25 @@ fn each_method_meets_its_measure() {
 /// fitted lobes, in float64 and by the GPU, within what the reference's own lobes of a fitted table give.
 #[test]
 fn what_is_visible_of_lights_behind_triangles_shines() {
-    let device = device();
     // Of two lobes one case makes the last: a dielectric that is seen at 77 degrees. Without it they err less
     // than one does
     let [one, two] = ["one", "two"];
-    for (method, lobes, bounds) in [
+    let all = [
         ("truth", two, [1e-9, 1e-8, 1e-8]),
         ("oracle", one, [1e-14, 1.4e-2, 0.12]),
         ("oracle", two, [1e-14, 7.5e-3, 0.13]),
         ("gpu", one, [1e-6, 1.4e-2, 0.12]),
         ("gpu", two, [1e-6, 7.5e-3, 0.13]),
-    ] {
-        if method == "gpu" && !device {
-            continue;
-        }
-        let measures = |cases: &str| -> Vec<f64> {
+    ];
+    for (method, lobes, bounds) in methods(all, |one| one.0) {
+        let errors = |cases: &str| -> Vec<f64> {
             let truth = reference("shadows-truth.json");
-            let output = match method {
-                "truth" => precisely(&[cases, "--on", method, "--against", &truth, "--json"]),
-                _ => precisely(&[
-                    cases,
-                    "--on",
-                    method,
-                    "--specular-lobes",
-                    lobes,
-                    "--against",
-                    &truth,
-                    "--json",
-                ]),
-            };
-            assert!(output.status.success(), "{}", text(&output.stderr));
-            let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+            let lobes = if method == "truth" { &[][..] } else { &["--specular-lobes", lobes] };
+            let summary = measures(&[&[cases, "--on", method, "--against", &truth], lobes].concat());
             let families = summary["families"].as_array().unwrap().iter();
             families.map(|family| family["rmse_over_mean"].as_f64().unwrap()).collect()
         };
-        let found = measures(&reference("shadows.json"));
+        let found = errors(&reference("shadows.json"));
         assert!(
             found.len() == 3 && found.iter().zip(bounds).all(|(f, bound)| *f <= bound),
             "{method}, {lobes}: {found:?}"
@@ -139,28 +136,22 @@ fn what_is_visible_of_lights_behind_triangles_shines() {
         for case in cases["cases"].as_array_mut().unwrap() {
             case.as_object_mut().unwrap().remove("occluders");
         }
-        let found = measures(&write(&format!("unshadowed-{method}.json"), &cases.to_string()));
+        let found = errors(&write(&format!("unshadowed-{method}.json"), &cases.to_string()));
         assert!(found.iter().all(|f| *f > 0.3), "{method}: {found:?}");
     }
 }
 
 #[test]
 fn anisotropic_surfaces_are_answered_by_every_method() {
-    let device = device();
     let measure = |method: &str, cases: &str| -> f64 {
         let truth = reference("anisotropy-truth.json");
-        let output = precisely(&[cases, "--on", method, "--against", &truth, "--json"]);
-        assert!(output.status.success(), "{method}: {}", text(&output.stderr));
-        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let summary = measures(&[cases, "--on", method, "--against", &truth]);
         let family = &summary["families"][0];
         assert_eq!((&family["material"], &family["answered"]), (&"anisotropic ggx".into(), &20.into()));
         family["mean_unit_error"].as_f64().unwrap()
     };
     // Twice the mean of what another design gives of metals and of dielectrics there, 8.8e-3 and 1.2e-3
-    for (method, bound) in [("truth", 1e-7), ("oracle", 10e-3), ("gpu", 10e-3)] {
-        if method == "gpu" && !device {
-            continue;
-        }
+    for (method, bound) in methods([("truth", 1e-7), ("oracle", 10e-3), ("gpu", 10e-3)], |one| one.0) {
         let found = measure(method, &reference("anisotropy.json"));
         assert!(found < bound, "{method}: {found:e}");
         // The twin: turned by a right angle
@@ -178,19 +169,11 @@ fn anisotropic_surfaces_are_answered_by_every_method() {
 
 #[test]
 fn layered_materials_are_answered_by_every_method() {
-    let device = device();
     // A layer's albedo is itself an integral, of sheen to 1e-4. Fitted lobes are held to the means below:
     // where next to nothing is reflected they err by as much
-    for (method, tolerance) in [("truth", "1e-4"), ("oracle", "1"), ("gpu", "1")] {
-        if method == "gpu" && !device {
-            continue;
-        }
-        let truth = reference("materials-truth.json");
-        let arguments = ["--on", method, "--against", &truth, "--json", "--tolerance"];
-        let output =
-            precisely(&[&[reference("materials.json").as_str()], &arguments[..], &[tolerance]].concat());
-        assert!(output.status.success(), "{method}: {}", text(&output.stderr));
-        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let [cases, truth] = ["materials.json", "materials-truth.json"].map(reference);
+    for (method, tolerance) in methods([("truth", "1e-4"), ("oracle", "1"), ("gpu", "1")], |one| one.0) {
+        let summary = measures(&[&cases, "--on", method, "--against", &truth, "--tolerance", tolerance]);
         // Twice what another design gives there
         for (family, (material, count, bound)) in [
             ("coat", 14, 4.8e-3),
@@ -212,16 +195,7 @@ fn layered_materials_are_answered_by_every_method() {
         }
     }
     // The twin: the fitted lobe is not the truth
-    let truth = reference("materials-truth.json");
-    let output = precisely(&[
-        &reference("materials.json"),
-        "--on",
-        "oracle",
-        "--against",
-        &truth,
-        "--tolerance",
-        "1e-3",
-    ]);
+    let output = precisely(&[&cases, "--on", "oracle", "--against", &truth, "--tolerance", "1e-3"]);
     assert_eq!(output.status.code(), Some(1));
 }
 
@@ -258,14 +232,12 @@ fn cases_with_films() -> Value {
 
 #[test]
 fn thin_films_are_answered_by_every_method() {
-    let device = device();
     let cases = write("films.json", &cases_with_films().to_string());
     let truth = write("films-truth.json", "");
     let output = eval(&[&cases, "--on", "truth", "-o", &truth]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let mean_error = |cases: &str, method: &str| {
-        let output = precisely(&[cases, "--on", method, "--against", &truth, "--json"]);
-        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let summary = measures(&[cases, "--on", method, "--against", &truth]);
         let families = summary["families"].as_array().unwrap().iter();
         let number = |family: &Value, field: &str| family[field].as_f64().unwrap();
         let sums = families.fold([0.0; 2], |[sum, count], family| {
@@ -275,10 +247,7 @@ fn thin_films_are_answered_by_every_method() {
         assert_eq!(sums[1], 119.0, "{summary:#}");
         sums[0] / sums[1]
     };
-    for method in ["oracle", "gpu"] {
-        if method == "gpu" && !device {
-            continue;
-        }
+    for method in methods(["oracle", "gpu"], |one| one) {
         let error = mean_error(&cases, method);
         println!("{method}: {error:.2e}");
         // 2.9e-3 was found: what lobes err where the Fresnel term is right is most of it

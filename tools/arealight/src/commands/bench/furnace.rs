@@ -1,6 +1,6 @@
 //! `arealight bench furnace`
 
-use super::{Ends, document};
+use super::Ends;
 use crate::failure::Failure;
 use crate::progress;
 use arealight_benches::furnace::{self, Options};
@@ -25,16 +25,12 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let Arguments { steps, ends } = arguments;
     let host = ends.host()?;
-    let bar = progress::bar(furnace::levels().len() as u64, "levels");
-    let found = furnace::run(&host, &arealight::LightTable::ggx(), &Options { steps: *steps }, &|count| {
-        bar.inc(count);
-    });
-    bar.finish_and_clear();
-    let found = found.map_err(|error| Failure::Device(error.to_string()))?;
+    let found = progress::of(furnace::levels().len() as u64, "levels", |tell| {
+        furnace::run(&host, &arealight::LightTable::ggx(), &Options { steps: *steps }, tell)
+    })?;
 
     let section =
         found.to_markdown(&format!("arealight bench furnace --steps {steps} --markdown docs/stability.md"));
-    let whole = ends.markdown.as_deref().map(|path| document(path, Markers::FURNACE, &section));
-    ends.report(&found, &whole.unwrap_or_default(), &found.to_text())?;
+    ends.section(&found, Markers::FURNACE, &section, &found.to_text())?;
     Ok(ExitCode::SUCCESS)
 }

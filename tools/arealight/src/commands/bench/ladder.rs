@@ -66,10 +66,9 @@ pub fn run(arguments: &LadderArguments) -> Result<ExitCode, Failure> {
     arguments.html.as_deref().map_or(Ok(()), plots::check)?;
     let host = arguments.ends.host()?;
 
-    let bar = progress::bar(options.steps(), "steps");
-    let found = ladder::run(&host, &arealight::LightTable::ggx(), &scene, &options, &|count| bar.inc(count));
-    bar.finish_and_clear();
-    let (mut found, pictures) = found.map_err(|error| Failure::Device(error.to_string()))?;
+    let (mut found, pictures) = progress::of(options.steps(), "steps", |tell| {
+        ladder::run(&host, &arealight::LightTable::ggx(), &scene, &options, tell)
+    })?;
     found.command = arguments.command();
 
     if let Some(path) = &arguments.html {

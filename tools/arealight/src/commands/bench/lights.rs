@@ -1,6 +1,6 @@
 //! `arealight bench lights`
 
-use super::{Ends, document};
+use super::Ends;
 use crate::commands::render::parse_size;
 use crate::failure::Failure;
 use crate::plots::{self, Kind};
@@ -58,17 +58,15 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         rounds: *rounds,
         ..Options::default()
     };
-    let bar = progress::bar(many_lights::steps(&options), "frames");
-    let found = many_lights::run(&host, &arealight::LightTable::ggx(), &options, &|count| bar.inc(count));
-    bar.finish_and_clear();
-    let found = found.map_err(|error| Failure::Device(error.to_string()))?;
+    let found = progress::of(many_lights::steps(&options), "frames", |tell| {
+        many_lights::run(&host, &arealight::LightTable::ggx(), &options, tell)
+    })?;
 
     let section = found
         .to_markdown("arealight bench lights --markdown docs/data/tiles.md --svg docs/images/lights.svg");
-    let whole = ends.markdown.as_deref().map(|path| document(path, Markers::LIGHTS, &section));
     if let Some(path) = svg {
         plots::draw(Kind::Lights, &serde_json::to_value(&found).unwrap_or_default(), path)?;
     }
-    ends.report(&found, &whole.unwrap_or_default(), &found.to_text())?;
+    ends.section(&found, Markers::LIGHTS, &section, &found.to_text())?;
     Ok(ExitCode::SUCCESS)
 }

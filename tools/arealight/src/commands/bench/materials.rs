@@ -1,6 +1,6 @@
 //! `arealight bench materials`
 
-use super::{Ends, document};
+use super::Ends;
 use crate::failure::Failure;
 use crate::{lights, progress};
 use arealight_benches::materials::{self, Options};
@@ -44,18 +44,15 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let options = Options { size: [size * 16 / 9, *size], samples: *samples };
     let host = ends.host()?;
 
-    let bar = progress::bar(2 * u64::from(*samples), "samples a pixel");
-    let found =
-        materials::run(&host, &arealight::LightTable::ggx(), &read, &options, &|count| bar.inc(count));
-    bar.finish_and_clear();
-    let found = found.map_err(|error| Failure::Device(error.to_string()))?;
+    let found = progress::of(2 * u64::from(*samples), "samples a pixel", |tell| {
+        materials::run(&host, &arealight::LightTable::ggx(), &read, &options, tell)
+    })?;
 
     let path = scene.as_ref().map_or_else(String::new, |path| format!("{} ", path.display()));
     let command = format!(
         "arealight bench materials {path}--size {size} --samples {samples} --markdown docs/materials.md"
     );
     let section = found.to_markdown(&command);
-    let whole = ends.markdown.as_deref().map(|path| document(path, Markers::MATERIALS, &section));
-    ends.report(&found, &whole.unwrap_or_default(), &found.to_text())?;
+    ends.section(&found, Markers::MATERIALS, &section, &found.to_text())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -2,13 +2,12 @@
 
 mod strip;
 
-use super::{Ends, document};
+use super::Ends;
 use crate::failure::Failure;
 use crate::{lights, progress};
 use arealight_benches::sections::Markers;
 use arealight_benches::{shadow_levels, shadow_motion};
 use arealight_scene::Scene;
-use serde::Serialize;
 use std::cell::RefCell;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -83,18 +82,6 @@ impl Arguments {
         }
         format!("{command} {options} --markdown docs/data/shadows.md")
     }
-
-    /// Writes a section of a document, and prints.
-    fn report(
-        &self,
-        found: &impl Serialize,
-        markers: Markers,
-        section: &str,
-        text: &str,
-    ) -> Result<(), Failure> {
-        let whole = self.ends.markdown.as_deref().map(|path| document(path, markers, section));
-        self.ends.report(found, &whole.unwrap_or_default(), text)
-    }
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
@@ -110,15 +97,13 @@ fn run_levels(arguments: &Arguments) -> Result<(), Failure> {
     let scenes = arguments.scenes()?;
     let host = arguments.ends.host()?;
 
-    let bar = progress::bar(options.steps(scenes.len()), "steps");
-    let found =
-        shadow_levels::run(&host, &arealight::LightTable::ggx(), &scenes, &options, &|count| bar.inc(count));
-    bar.finish_and_clear();
-    let found = found.map_err(|error| Failure::Device(error.to_string()))?;
+    let found = progress::of(options.steps(scenes.len()), "steps", |tell| {
+        shadow_levels::run(&host, &arealight::LightTable::ggx(), &scenes, &options, tell)
+    })?;
 
     let command =
         arguments.command(&format!("--size {size} --samples {samples} --rounds {}", arguments.rounds));
-    arguments.report(&found, Markers::SHADOWS, &found.to_markdown(&command), &found.to_text())
+    arguments.ends.section(&found, Markers::SHADOWS, &found.to_markdown(&command), &found.to_text())
 }
 
 fn run_motion(arguments: &Arguments) -> Result<(), Failure> {
@@ -133,7 +118,6 @@ fn run_motion(arguments: &Arguments) -> Result<(), Failure> {
     }
     let host = arguments.ends.host()?;
 
-    let bar = progress::bar(options.steps(scenes.len()), "frames");
     let stills = RefCell::new(vec![]);
     let first = scenes.first().map(|scene| &*scene.name);
     let show = |still: shadow_motion::Still| {
@@ -141,10 +125,9 @@ fn run_motion(arguments: &Arguments) -> Result<(), Failure> {
             stills.borrow_mut().push(still);
         }
     };
-    let advance = |count| bar.inc(count);
-    let found = shadow_motion::run(&host, &arealight::LightTable::ggx(), &scenes, &options, &advance, &show);
-    bar.finish_and_clear();
-    let found = found.map_err(|error| Failure::Device(error.to_string()))?;
+    let found = progress::of(options.steps(scenes.len()), "frames", |tell| {
+        shadow_motion::run(&host, &arealight::LightTable::ggx(), &scenes, &options, tell, &show)
+    })?;
     if let Some(path) = &arguments.strip {
         strip::draw(&stills.borrow(), size).save_png(path)?;
         eprintln!("wrote {}", path.display());
@@ -152,5 +135,5 @@ fn run_motion(arguments: &Arguments) -> Result<(), Failure> {
 
     let command =
         arguments.command(&format!("--motion --size {height} --samples {truth} --every {}", arguments.every));
-    arguments.report(&found, Markers::SHADOWS_IN_MOTION, &found.to_markdown(&command), &found.to_text())
+    arguments.ends.section(&found, Markers::SHADOWS_IN_MOTION, &found.to_markdown(&command), &found.to_text())
 }

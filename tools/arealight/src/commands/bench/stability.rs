@@ -73,10 +73,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     arguments.svg.as_deref().map_or(Ok(()), plots::check)?;
     let host = arguments.ends.host()?;
 
-    let bar = progress::bar(options.samples * options.families.len() as u64, "polygons");
-    let found = stability::run(&host, &arealight::LightTable::ggx(), &options, &|count| bar.inc(count));
-    bar.finish_and_clear();
-    let found = found.map_err(|error| Failure::Device(error.to_string()))?;
+    let found = progress::of(options.samples * options.families.len() as u64, "polygons", |tell| {
+        stability::run(&host, &arealight::LightTable::ggx(), &options, tell)
+    })?;
 
     if let Some(path) = &arguments.svg {
         plots::draw(Kind::Stability, &serde_json::to_value(&found).unwrap_or_default(), path)?;
@@ -98,10 +97,9 @@ and the largest error of those that are.";
 
 fn run_shapes(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let host = arguments.ends.host()?;
-    let bar = progress::bar(arguments.samples * shape_stability::family_count(), "shapes");
-    let rows = shape_stability::run(&host, arguments.samples, arguments.seed, &|count| bar.inc(count));
-    bar.finish_and_clear();
-    let rows = rows.map_err(|error| Failure::Device(error.to_string()))?;
+    let rows = progress::of(arguments.samples * shape_stability::family_count(), "shapes", |tell| {
+        shape_stability::run(&host, arguments.samples, arguments.seed, tell)
+    })?;
 
     let table = shape_stability::markdown(&rows);
     let document = format!(

@@ -34,10 +34,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         Options { poses: arguments.poses as usize, seed: arguments.seed, rounds: arguments.rounds as usize };
     let host = arguments.ends.host()?;
 
-    let bar = progress::bar(options.steps(), "poses");
-    let found = footprints::run(&host, &arealight::LightTable::ggx(), &options, &|count| bar.inc(count));
-    bar.finish_and_clear();
-    let found = found.map_err(|error| Failure::Device(error.to_string()))?;
+    let found = progress::of(options.steps(), "poses", |tell| {
+        footprints::run(&host, &arealight::LightTable::ggx(), &options, tell)
+    })?;
 
     arguments.ends.report(&found, &found.to_markdown(), &found.to_text())?;
     Ok(if found.shortfalls().next().is_some() { ExitCode::FAILURE } else { ExitCode::SUCCESS })
