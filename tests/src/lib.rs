@@ -81,9 +81,4 @@ impl TestEngine {
         let Self { engine, host } = Self::new()?;
         Some(Self { engine: engine.with_whole_modules(), host })
     }
-
-    /// The validated host.
-    pub fn test_host(&self) -> &TestHost {
-        &self.host
-    }
 }

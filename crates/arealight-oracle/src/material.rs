@@ -104,15 +104,6 @@ pub struct Anisotropy {
     pub alpha: f64,
 }
 
-impl Anisotropy {
-    /// Alphas along the tangent and across it of a roughness and an `anisotropyStrength`, both in [0, 1], of
-    /// `KHR_materials_anisotropy`.
-    pub fn gltf_alphas(roughness: f64, strength: f64) -> [f64; 2] {
-        let alpha = roughness * roughness;
-        [alpha + (1.0 - alpha) * strength * strength, alpha].map(|alpha| alpha.max(arealight::MIN_ALPHA))
-    }
-}
-
 impl Default for Surface {
     /// Black, with an alpha of 1.
     fn default() -> Self {

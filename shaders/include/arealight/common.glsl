@@ -105,11 +105,6 @@ float arealight_lit_side(vec3 offset, vec3 normal, bool two_sided, float error) 
     return height > width ? 1.0 : two_sided && -height > width ? -1.0 : 0.0;
 }
 
-// A height that is a rounding of zero for a vector of the size that `width` is of, as zero.
-float arealight_settled_height(float height, float width) {
-    return abs(height) > width ? height : 0.0;
-}
-
 // Whether x is neither infinite nor NaN, by its bits, so that no compiler can assume it. For a light's
 // record, GPUs with scalar units compute this once per wave.
 bool arealight_is_finite(float x) {

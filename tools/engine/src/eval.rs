@@ -119,10 +119,10 @@ pub fn gpu_case(point: &EvalPoint, light: u32) -> GpuCase {
 }
 
 /// The answers of points, in their order, which `answer` gives for all that need the same effects at once.
-pub(crate) fn answers_by(
-    points: &[&EvalPoint],
-    needed: impl Fn(&EvalPoint) -> Effects,
-    answer: impl Fn(Effects, &[&EvalPoint]) -> Result<Vec<Vec3>, EngineError>,
+pub(crate) fn answers_by<P>(
+    points: &[&P],
+    needed: impl Fn(&P) -> Effects,
+    answer: impl Fn(Effects, &[&P]) -> Result<Vec<Vec3>, EngineError>,
 ) -> Result<Vec<Vec3>, EngineError> {
     let mut subsets: Vec<(Effects, Vec<usize>)> = Vec::new();
     for (index, point) in points.iter().enumerate() {
@@ -134,7 +134,7 @@ pub(crate) fn answers_by(
     }
     let mut answers = vec![Vec3::ZERO; points.len()];
     for (needed, indices) in subsets {
-        let subset: Vec<&EvalPoint> = indices.iter().map(|&index| points[index]).collect();
+        let subset: Vec<&P> = indices.iter().map(|&index| points[index]).collect();
         for (&index, answer) in indices.iter().zip(answer(needed, &subset)?) {
             answers[index] = answer;
         }

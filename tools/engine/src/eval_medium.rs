@@ -1,8 +1,7 @@
 //! Points in a medium one by one.
 
-use crate::eval::{POLYGONAL, rounded};
+use crate::eval::{POLYGONAL, answers_by, rounded};
 use crate::{Engine, EngineError};
-use arealight::gpu::GpuShape;
 use arealight::{Effects, Light, PackedLights, Quality};
 use arealight_tool_kernels::gpu::GpuMediumCase;
 use arealight_tool_kernels::plan;
@@ -34,21 +33,13 @@ impl AsMut<Light> for MediumPoint {
     }
 }
 
-impl MediumPoint {
-    /// What the kernel's constants say of the light: its kind, and its effects among polygons' and images'.
-    fn kind(&self) -> (u32, Effects) {
-        let effects = self.light.effects();
-        let kind = [
-            (Effects::ELLIPSE, GpuShape::DISK),
-            (Effects::SPHERE, GpuShape::SPHERE),
-            (Effects::TUBE, GpuShape::TUBE),
-        ];
-        let kind = kind.into_iter().find(|(effect, _)| effects.contains(*effect));
-        let of_lights = Effects::ELLIPSE | Effects::SPHERE | Effects::TUBE | Effects::TEXTURED_ELLIPSE;
-        let counted = effects & (POLYGONAL | of_lights | Effects::TWO_SIDED);
-        (kind.map_or(plan::POLYGONAL, |(_, kind)| kind), counted)
-    }
-}
+/// What a pipeline has of the lights' effects.
+const OF_LIGHTS: Effects = POLYGONAL
+    .union(Effects::ELLIPSE)
+    .union(Effects::SPHERE)
+    .union(Effects::TUBE)
+    .union(Effects::TEXTURED_ELLIPSE)
+    .union(Effects::TWO_SIDED);
 
 impl Engine {
     /// The radiance that each point scatters towards its viewer, W/(m² sr) per unit of length, by the GLSL
@@ -57,26 +48,14 @@ impl Engine {
     /// # Errors
     /// [`EngineError`] names a light that cannot be shaded, or says why the device cannot do it.
     pub fn eval_medium(&self, points: &[MediumPoint], quality: Quality) -> Result<Vec<Vec3>, EngineError> {
-        // A pipeline for each kind, as surfaces have it
-        let mut kinds: Vec<(u32, Effects)> = points.iter().map(MediumPoint::kind).collect();
-        kinds.sort_by_key(|(kind, effects)| (*kind, effects.bits()));
-        kinds.dedup();
-        let mut radiance = vec![Vec3::ZERO; points.len()];
-        for (kind, effects) in kinds {
-            let of_kind = |index: &usize| points[*index].kind() == (kind, effects);
-            let indices: Vec<usize> = (0..points.len()).filter(of_kind).collect();
-            let subset: Vec<&MediumPoint> = indices.iter().map(|&index| &points[index]).collect();
-            for (&index, answer) in indices.iter().zip(self.eval_medium_as(kind, effects, &subset, quality)?)
-            {
-                radiance[index] = answer;
-            }
-        }
-        Ok(radiance)
+        let needed = |point: &MediumPoint| point.light.effects() & OF_LIGHTS;
+        answers_by(&points.iter().collect::<Vec<_>>(), needed, |needed, subset| {
+            self.eval_medium_as(needed, subset, quality)
+        })
     }
 
     fn eval_medium_as(
         &self,
-        kind: u32,
         effects: Effects,
         points: &[&MediumPoint],
         quality: Quality,
@@ -90,7 +69,7 @@ impl Engine {
             lights.append(PackedLights::new(light, point.position)?)?;
             cases.push(GpuMediumCase { view: rounded(point.view), anisotropy: point.anisotropy as f32 });
         }
-        let dispatch = plan::eval_medium(effects, quality, kind, 0);
+        let dispatch = plan::eval_medium(effects, quality, 0);
         let buffers = [
             self.storage("lights", &lights.lights)?,
             self.storage("light vertices", &lights.vertices)?,

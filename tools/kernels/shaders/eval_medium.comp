@@ -10,7 +10,6 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
 layout(constant_id = 1) const int FORM_FACTOR = 0;
 layout(constant_id = 7) const int FOOTPRINT = 0;
-layout(constant_id = 10) const int SHAPE = 0;
 const int HORIZON = 0;
 const int SPECULAR_LOBES = 0;
 const int LOBES = 0;
@@ -23,9 +22,6 @@ const int LOBES = 0;
 #include "polygon_lights.glsl"
 #include "round_lights.glsl"
 #include "scattered_light.glsl"
-
-// The light is in the list of polygons and meshes
-const int SHAPE_NONE = 4;
 
 struct ArealightGpuMediumCase {
     vec3 view;
@@ -50,7 +46,6 @@ void main() {
     }
     ArealightGpuMediumCase given = cases[index];
     ArealightMediumPoint medium = arealight_medium_point(vec3(0.0), given.view, given.anisotropy);
-    vec3 radiance = SHAPE == SHAPE_NONE ? in_scattered(medium, lights[index])
-                                        : in_scattered(medium, shapes[index]);
+    vec3 radiance = HAS_SHAPES ? in_scattered(medium, shapes[index]) : in_scattered(medium, lights[index]);
     results[index] = vec4(radiance, 0.0);
 }

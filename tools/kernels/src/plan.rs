@@ -29,16 +29,11 @@ pub fn eval_shapes(effects: Effects, quality: Quality, kind: u32, case_count: u3
     Dispatch { kernel: &EVAL_SHAPES, specialization, groups: EVAL_SHAPES.groups_for([case_count, 1, 1]) }
 }
 
-/// As [`eval`], of points in a medium: under polygons and meshes for a `kind` of [`POLYGONAL`], or under
-/// shapes of one kind of [`arealight::gpu::GpuShape`].
-pub fn eval_medium(effects: Effects, quality: Quality, kind: u32, case_count: u32) -> Dispatch {
-    let mut specialization = specialization(&EVAL_MEDIUM, effects, quality);
-    specialization.push((constant::SHAPE, kind));
+/// As [`eval`], of points in a medium: under polygons and meshes, or under shapes where `effects` have any.
+pub fn eval_medium(effects: Effects, quality: Quality, case_count: u32) -> Dispatch {
+    let specialization = specialization(&EVAL_MEDIUM, effects, quality);
     Dispatch { kernel: &EVAL_MEDIUM, specialization, groups: EVAL_MEDIUM.groups_for([case_count, 1, 1]) }
 }
-
-/// The kind of [`eval_medium`] whose lights are no shapes.
-pub const POLYGONAL: u32 = 4;
 
 /// The shade kernel's constants, of those that `kernel` has.
 fn specialization(kernel: &Kernel, effects: Effects, quality: Quality) -> Vec<(u32, u32)> {
@@ -65,7 +60,7 @@ mod tests {
         assert_eq!((points.groups, ids(&points)), ([2, 1, 1], EVAL.constants().to_vec()));
         let shapes = eval_shapes(Effects::all(), Quality::default(), GpuShape::ANY, 64);
         assert_eq!((shapes.groups, ids(&shapes)), ([1, 1, 1], EVAL_SHAPES.constants().to_vec()));
-        let medium = eval_medium(Effects::all(), Quality::default(), POLYGONAL, 1);
+        let medium = eval_medium(Effects::all(), Quality::default(), 1);
         assert_eq!((medium.groups, ids(&medium)), ([1, 1, 1], EVAL_MEDIUM.constants().to_vec()));
     }
 }

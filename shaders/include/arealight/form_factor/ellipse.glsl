@@ -152,15 +152,6 @@ vec3 arealight_ellipse_cone_axis(ArealightEllipse ellipse, float root) {
     return vec3(ellipse.center.xy * (root * arealight_confocal_reciprocals(ellipse, root)), ellipse.center.z);
 }
 
-// The integral of the direction over pi, over the directions that the ellipse covers, in its frame: a vector
-// whose product with any unit normal above whose horizon all of the ellipse lies is the form factor.
-vec3 arealight_ellipse_vector(ArealightEllipse ellipse, float root) {
-    vec3 axis = arealight_ellipse_cone_axis(ellipse, root);
-    vec2 reciprocals = arealight_confocal_reciprocals(ellipse, root);
-    float area = ellipse.center.z * ellipse.major * ellipse.minor;
-    return axis * (area * sqrt(reciprocals.x) * sqrt(reciprocals.y) / dot(axis, axis));
-}
-
 // The form factor of an ellipse that lies wholly above the horizon, of either side. Error: 4e-7, relative
 // 2e-6 at any distance, for an ellipse as it rounds: its center and axes are as if moved by 4 x 2^-24 of
 // their lengths.
@@ -175,15 +166,6 @@ float arealight_whole_ellipse(ArealightEllipse ellipse, float root) {
     float height = root > a2 ? ellipse.height - dot(less, up.xy) : dot(axis, up);
     float area = ellipse.center.z * ellipse.major * ellipse.minor;
     return height * (area * inversesqrt((a2 + root) * (b2 + root)) / dot(axis, axis));
-}
-
-// The vector form factor of a whole ellipse, in the space that it is given in: the integral of the direction
-// over pi, of length at most 1. Its direction is the cone's axis. Not clipped, and whatever side is seen; NaN
-// where an input is.
-vec3 arealight_ellipse_vector_form_factor(vec3 center, vec3 axis_u, vec3 axis_v) {
-    ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
-    return arealight_ellipse_frame(ellipse)
-        * arealight_ellipse_vector(ellipse, arealight_confocal_root(ellipse));
 }
 
 #endif

@@ -235,8 +235,8 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
             let table = arguments.quality.table()?;
             let mut engine = gpu::LazyEngine::new(arguments.device.device.as_deref(), &table);
             let polygons = gpu::eval::answer(&polygons, quality, &mut engine, &arguments.cases)?;
-            let shapes = gpu::eval_shapes::answer(&shapes, quality, &mut engine, &arguments.cases)?;
-            (polygons, shapes, gpu::eval_medium::answer(&media, quality, &mut engine, &arguments.cases)?)
+            let shapes = gpu::eval_alike::answer(&shapes, quality, &mut engine, &arguments.cases)?;
+            (polygons, shapes, gpu::eval_alike::answer(&media, quality, &mut engine, &arguments.cases)?)
         }
         Method::Oracle => {
             let table = arguments.quality.table()?;

@@ -1,8 +1,7 @@
 //! The commands' way to a device.
 
 pub mod eval;
-pub mod eval_medium;
-pub mod eval_shapes;
+pub mod eval_alike;
 
 use crate::failure::Failure;
 use crate::progress;

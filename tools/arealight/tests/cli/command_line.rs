@@ -354,6 +354,7 @@ fn shadows_go_on_until_their_noise_is_low() {
     refuse(folder.path(), &["render", "--shadow-noise", "0"], 2, &["--shadow-noise", "above 0"]);
 }
 
+#[test]
 fn pictures_are_compared() {
     let folder = tempfile::tempdir().unwrap();
     let picture = |name: &str, size: usize, value: f32| {
