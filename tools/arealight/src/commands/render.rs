@@ -88,8 +88,7 @@ pub struct Arguments {
 /// A medium before the picture.
 #[derive(clap::Args)]
 struct FogArguments {
-    /// Fog: extinction per unit of length. Its froxels are 8 pixels wide and high, in 64 slices, of four
-    /// samples each
+    /// Fog: extinction per unit of length. Its froxels are 8 pixels wide and high, in 64 slices
     #[arg(long, value_name = "DENSITY", value_parser = parse_density)]
     fog: Option<f32>,
     /// Of fog, the mean cosine of the angle by which it turns light: above 0 forwards
@@ -99,6 +98,10 @@ struct FogArguments {
     /// Of fog, what it scatters of what it takes away
     #[arg(long, value_name = "PART", default_value_t = 1.0, requires = "fog", value_parser = parse_albedo)]
     fog_albedo: f32,
+    /// Of each of the fog's froxels: samples, each with a shadow ray for each light
+    #[arg(long, value_name = "N", default_value_t = 4, requires = "fog",
+        value_parser = clap::value_parser!(u32).range(1..=1024))]
+    fog_samples: u32,
 }
 
 impl FogArguments {

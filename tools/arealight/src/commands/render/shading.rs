@@ -149,9 +149,6 @@ pub fn render(
     Ok(sum)
 }
 
-/// Of a froxel.
-const FOG_SAMPLES: u32 = 4;
-
 /// Puts a fog before what a renderer shaded, as the arguments say.
 fn add_fog(
     renderer: &mut SceneRenderer<'_>,
@@ -165,7 +162,7 @@ fn add_fog(
         return renderer.fog_reference(fog, samples, (shadows, seed), |_| ());
     }
     let [columns, rows] = size.map(|side| side.div_ceil(8 * arguments.supersample));
-    renderer.add_fog(scene, fog, [columns, rows, 64], (FOG_SAMPLES, shadows, seed))
+    renderer.add_fog(scene, fog, [columns, rows, 64], (arguments.fog.fog_samples, shadows, seed))
 }
 
 /// The radiance of each sample.
