@@ -20,7 +20,7 @@ const int HORIZON = 0;
 const int SPECULAR_LOBES = 0;
 const int LOBES = 0;
 
-// arealight::plan::MediumRays
+// Values of MEDIUM_RAYS
 const int RAY_A_FROXEL = 1;
 const int RAY_A_LIGHT = 2;
 

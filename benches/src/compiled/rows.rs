@@ -6,8 +6,7 @@ use crate::ladder::methods::SHADE_YARDSTICK;
 use crate::school::School;
 use arealight::kernels::{self, BindingKind, Kernel};
 use arealight::plan::{
-    self, MediumOptions, MediumRays, Output, RadianceFormat, ShadeOptions, ShadowFilter, ShadowHistory,
-    TileOptions,
+    self, MediumOptions, Output, RadianceFormat, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions,
 };
 use arealight::{
     Effects, Footprint, FormFactor, Horizon, LightSummary, Lobes, Quality, SpecularLobes, TileClass,
@@ -237,9 +236,9 @@ fn other_rows() -> Vec<Row> {
         shadow_filter("gather", ShadowFilter::Gather, ShadowHistory::Off),
         shadow_filter("gather, with a history", ShadowFilter::Gather, ShadowHistory::Camera),
         // Media
-        medium("quads", "no rays", none, MediumRays::Off),
-        medium("quads", "1 ray", none, MediumRays::AFroxel),
-        medium("every kind", "no rays", every_kind, MediumRays::Off),
+        medium("quads", "no rays", none, false),
+        medium("quads", "1 ray", none, true),
+        medium("every kind", "no rays", every_kind, false),
         // Images of lights
         load("copied", 0),
         load("resampled, sRGB", 3),
@@ -337,9 +336,9 @@ fn shadowed(surfaces: Effects, shadow_rays: u32) -> ShadeOptions {
 }
 
 /// Froxels; `kinds` of lights beside quads.
-fn medium(lights: &'static str, level: &'static str, kinds: Effects, rays: MediumRays) -> Row {
+fn medium(lights: &'static str, level: &'static str, kinds: Effects, rays: bool) -> Row {
     let frame = LightSummary { quad_count: 1, effects: kinds, ..LightSummary::default() };
-    let options = MediumOptions { rays, ..MediumOptions::default() };
+    let options = MediumOptions { shadow_rays: rays, one_light: rays, ..MediumOptions::default() };
     let specialization = plan::medium_scatter_specialization(options, frame);
     row(&kernels::MEDIUM_SCATTER, lights, level, None, specialization)
 }

@@ -10,7 +10,7 @@ use crate::shade::{Bound, ResourceAccess, ShadeResources, accesses_of};
 use crate::shadows::{BlockerResources, USED, WRITTEN};
 use arealight::gpu::MediumConstants;
 use arealight::kernels::{Binding, Kernel, MEDIUM_COMPOSE, MEDIUM_INTEGRATE, MEDIUM_SCATTER, store_to};
-use arealight::plan::{self, MediumOptions, MediumRays};
+use arealight::plan::{self, MediumOptions};
 use arealight::{LightSummary, Plane};
 use ash::vk;
 use glam::{Mat4, Vec3};
@@ -38,7 +38,7 @@ pub struct MediumResources {
     /// With [`MediumOptions::by_image`], a sampled 3D image of the same size: scattering coefficients in rgb,
     /// extinction in a, per unit of length.
     pub medium: Option<Resource>,
-    /// What blocks rays, with [`MediumOptions::rays`]; none with a module that answers by itself.
+    /// What blocks rays, with [`MediumOptions::shadow_rays`]; none with a module that answers by itself.
     pub blockers: Option<BlockerResources>,
 }
 
@@ -178,9 +178,9 @@ impl MediumPass {
         if self.options.by_image && resources.medium.is_none() {
             return missing("medium", "is missing, but the pass reads it: see MediumOptions::by_image");
         }
-        let answers = self.options.rays == MediumRays::Off || self.layouts().has_host_set();
+        let answers = !self.options.shadow_rays || self.layouts().has_host_set();
         if !answers && resources.blockers.is_none() {
-            return missing("blockers", "are missing, but the pass has rays: see MediumOptions::rays");
+            return missing("blockers", "are missing, but the pass has rays: see MediumOptions::shadow_rays");
         }
         let any = BlockerResources { nodes: shade.lights, triangles: shade.lights };
         let blockers = resources.blockers.unwrap_or(any);

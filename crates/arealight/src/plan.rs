@@ -293,25 +293,15 @@ pub fn shadow_filter_specialization(
     values
 }
 
-/// What the rays of a medium are for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[repr(u32)]
-pub enum MediumRays {
-    /// None: light passes through everything, or the host's module says what arrives.
-    #[default]
-    Off = 0,
-    /// One a sample, over a light that is drawn by how much of it is scattered there. For hosts that filter
-    /// over frames.
-    AFroxel = 1,
-    /// One a sample and light.
-    ALight = 2,
-}
-
 /// How a medium is shaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct MediumOptions {
-    /// What asks for what blocks light.
-    pub rays: MediumRays,
+    /// Whether each sample has a ray over each light, which asks for what blocks it; else light passes
+    /// through everything, or the host's module says what arrives.
+    pub shadow_rays: bool,
+    /// Whether a sample has one ray alone instead, over a light that is drawn by how much of it is scattered
+    /// there. For hosts that filter over frames.
+    pub one_light: bool,
     /// At how many points of a froxel light is scattered, each with rays of its own. From 1, as which 0
     /// counts.
     pub samples: u32,
@@ -330,7 +320,8 @@ pub struct MediumOptions {
 impl Default for MediumOptions {
     fn default() -> Self {
         Self {
-            rays: MediumRays::Off,
+            shadow_rays: false,
+            one_light: false,
             samples: 1,
             by_image: false,
             jitter: false,
@@ -343,12 +334,13 @@ impl Default for MediumOptions {
 
 /// The values of the constants of [`kernels::MEDIUM_SCATTER`], for a frame's lights.
 pub fn medium_scatter_specialization(options: MediumOptions, lights: LightSummary) -> Vec<(u32, u32)> {
+    let rays = if options.one_light { 1 } else { 2 };
     vec![
         (kernels::constant::EFFECTS, lights.effects.bits()),
         (kernels::constant::FORM_FACTOR, options.quality.form_factor as u32),
         (kernels::constant::FOOTPRINT, options.quality.footprint as u32),
         (kernels::constant::HAS_QUADS, u32::from(lights.quad_count > 0)),
-        (kernels::constant::MEDIUM_RAYS, options.rays as u32),
+        (kernels::constant::MEDIUM_RAYS, if options.shadow_rays { rays } else { 0 }),
         (kernels::constant::MEDIUM_IMAGE, u32::from(options.by_image)),
         (kernels::constant::MEDIUM_JITTER, u32::from(options.jitter)),
         (kernels::constant::MEDIUM_SAMPLES, options.samples.max(1)),

@@ -44,7 +44,8 @@ pub const VIEW: u32 = 19;
 pub const LIGHT_COUNTS: u32 = 20;
 /// [`crate::plan::ShadeOptions::samples`].
 pub const SAMPLES: u32 = 21;
-/// [`crate::plan::MediumRays`].
+/// [`crate::plan::MediumOptions::shadow_rays`]: 0 without, 1 with [`crate::plan::MediumOptions::one_light`],
+/// else 2.
 pub const MEDIUM_RAYS: u32 = 22;
 /// [`crate::plan::MediumOptions::by_image`].
 pub const MEDIUM_IMAGE: u32 = 23;

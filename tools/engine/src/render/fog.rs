@@ -3,7 +3,7 @@
 use super::shadowed::blockers;
 use crate::host::{ImageDescription, Usage};
 use crate::{EngineError, Kept, SceneRenderer};
-use arealight::plan::{MediumOptions, MediumRays};
+use arealight::plan::MediumOptions;
 use arealight_scene::SceneBuffers;
 use arealight_tool_kernels::gpu::MediumReferenceConstants;
 use arealight_tool_kernels::kernels::{REFERENCE_MEDIUM, SHADOWS};
@@ -36,13 +36,12 @@ impl SceneRenderer<'_> {
         scene: &SceneBuffers,
         fog: &Fog,
         froxels: [u32; 3],
-        (samples, shadows, seed): (u32, bool, u32),
+        (samples, shadow_rays, seed): (u32, bool, u32),
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
         let (engine, host) = (self.engine, self.engine.host());
-        let rays = if shadows { MediumRays::ALight } else { MediumRays::Off };
         // doc: pass
-        let options = MediumOptions { rays, samples, ..MediumOptions::default() };
+        let options = MediumOptions { shadow_rays, samples, ..MediumOptions::default() };
         let info = MediumPassInfo { options, ..MediumPassInfo::default() };
         // SAFETY: The pass is dropped when no frame uses it, before the device.
         let pass = unsafe { MediumPass::new(engine.context(), info) }?;
