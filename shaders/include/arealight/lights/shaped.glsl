@@ -115,7 +115,8 @@ vec3 arealight_level_vector(mat3 space, ArealightLocalShaped local, float square
     uint last = start == 0u ? count : start;
     a = arealight_from_foot(local, local.polygon.first + last - 1u);
     for (uint step = is_whole ? count : 0u; step <= count; step++) {
-        uint index = is_whole ? 0u : (start + step) % count;
+        uint index = is_whole ? 0u : start + step;
+        index -= index < count ? 0u : count;
         vec3 b = arealight_from_foot(local, local.polygon.first + index);
         bool is_met = arealight_edge_in_disk(a, b, square, part);
         bool comes = is_whole || dot(a, a) >= square;
