@@ -37,7 +37,7 @@ pub(super) fn profiled(profile: &Profile, vertices: &[DVec3], visible: &[DVec3],
             let half_tangent = |square: f64| square.sqrt() / (1.0 + (1.0 - square).sqrt());
             let [first, last] =
                 [from, to].map(|place| half_tangent((place.x / profile.scale()).clamp(0.0, 1.0)));
-            let cosine = normal.dot(direction.normalize());
+            let cosine = normal.dot(direction) / direction.length();
             let middle = half_tangent((1.0 - cosine * cosine).max(0.0)).clamp(first, last.max(first));
             let shrunk = (seen.length() / direction.length()).powi(3) / determinant;
             let width = shrunk.sqrt() * (0.25 + 0.25 * middle * middle);
