@@ -4,7 +4,7 @@ use super::state::{Mode, Partner, State};
 use super::{lamps, orbit::Orbit};
 use crate::means::{Distance, Means};
 use crate::shadows::Shadows;
-use arealight::plan::{ShadeOptions, ShadowHistory};
+use arealight::plan::ShadeOptions;
 use arealight::{Effects, Level, Quality};
 use arealight_benches::ladder::{SHADE_YARDSTICK, yardstick_for};
 use arealight_benches::published;
@@ -306,20 +306,13 @@ impl<'a> Viewer<'a> {
     fn shade_with_shadows(&mut self, level: Level, seed: u32) -> Result<Option<Duration>, EngineError> {
         let Shadows::Rays(shadow_rays, filter) = Shadows::for_samples(1) else { return self.shade(level) };
         if self.shadowed.as_ref().is_none_or(|(of, _)| *of != level) {
-            let options = ShadeOptions { quality: level.quality(), shadow_rays, ..ShadeOptions::default() };
-            let view = |surfaces| {
-                let options = ShadeOptions { surfaces, ..options };
-                self.renderer.shadowed(&self.buffers, options, (filter, ShadowHistory::Off))
-            };
-            let views = self.surfaces().passes().map(view).collect::<Result<_, _>>()?;
+            let (quality, surfaces) = (level.quality(), self.surfaces());
+            let options = ShadeOptions { quality, surfaces, shadow_rays, ..ShadeOptions::default() };
+            let views = self.renderer.shadowed_passes(&self.buffers, options, filter)?;
             self.shadowed = Some((level, views));
         }
-        let mut total = Some(Duration::ZERO);
-        for view in self.shadowed.iter().flat_map(|(_, views)| views) {
-            let took = self.renderer.shade_shadowed(view, seed)?;
-            total = total.zip(took).map(|(total, took)| total + took);
-        }
-        Ok(total)
+        let views = self.shadowed.as_ref().map_or(&[][..], |(_, views)| views);
+        self.renderer.shade_shadowed_passes(views, seed)
     }
 
     fn draw_theirs(&mut self, seen: &Seen) -> Result<(), EngineError> {

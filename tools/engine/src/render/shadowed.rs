@@ -156,6 +156,38 @@ impl SceneRenderer<'_> {
         Ok(view)
     }
 
+    /// [`SceneRenderer::shadowed`] of each pass over the options' surfaces, without a history.
+    ///
+    /// # Errors
+    /// As [`SceneRenderer::shadowed`].
+    pub fn shadowed_passes(
+        &self,
+        scene: &SceneBuffers,
+        options: ShadeOptions,
+        filter: ShadowFilter,
+    ) -> Result<Vec<ShadowedView>, EngineError> {
+        let of = (filter, ShadowHistory::Off);
+        let view = |surfaces| self.shadowed(scene, ShadeOptions { surfaces, ..options }, of);
+        options.surfaces.passes().map(view).collect()
+    }
+
+    /// Shades those, one after the other, with rays of that seed.
+    ///
+    /// # Errors
+    /// As [`SceneRenderer::shade_shadowed`].
+    pub fn shade_shadowed_passes(
+        &mut self,
+        views: &[ShadowedView],
+        seed: u32,
+    ) -> Result<Option<Duration>, EngineError> {
+        let mut total = Some(Duration::ZERO);
+        for view in views {
+            let took = self.shade_shadowed(view, seed)?;
+            total = total.zip(took).map(|(total, took)| total + took);
+        }
+        Ok(total)
+    }
+
     /// What [`SHADOW_RAYS_MASKED`] reads.
     fn masks(&self) -> Result<OwnSet, EngineError> {
         let [_, own @ ..] = self.geometry.each_ref().map(|buffer| Resource::buffer(buffer.handle()));

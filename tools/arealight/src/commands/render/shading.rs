@@ -6,9 +6,9 @@ use crate::means::Means;
 use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::shadows::Shadows;
-use arealight::plan::{Output, ShadeOptions, ShadowHistory, TileOptions};
+use arealight::plan::{Output, ShadeOptions, TileOptions};
 use arealight::{Effects, Quality};
-use arealight_engine::{Engine, EngineError, Fog, Reference, SceneRenderer, TileCounts};
+use arealight_engine::{Engine, EngineError, Fog, Reference, SceneRenderer, ShadowedView, TileCounts};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::{DVec3, Vec3};
 use indicatif::ProgressBar;
@@ -120,19 +120,26 @@ pub fn render(
         // Frames of a film, bands and rounds each have seeds of their own, one after the other
         let seed =
             arguments.seed.wrapping_mul(MOST_BANDS).wrapping_add(index as u32).wrapping_mul(MOST_ROUNDS);
-        let view = View { surfaces, quality, seed, light_count: scene.lights.len() };
-        let (mut shading, tiles) = shade(&mut renderer, &buffers, &view, arguments, &bar)?;
+        let shadowed = match arguments.shadow_level() {
+            Shadows::Rays(shadow_rays, filter) if arguments.reference.is_none() => {
+                let options = ShadeOptions { surfaces, quality, shadow_rays, ..ShadeOptions::default() };
+                renderer.shadowed_passes(&buffers, options, filter)?
+            }
+            _ => vec![],
+        };
+        let view = View { surfaces, quality, seed, light_count: scene.lights.len(), shadowed };
+        let (mut shading, tiles) = shade(&mut renderer, &view, arguments, &bar)?;
         if let Some(fog) = &fog {
             let took = add_fog(&mut renderer, &buffers, (fog, in_band, seed), arguments)?;
             sum.fog = took.map(|took| sum.fog.unwrap_or_default() + took);
         }
         let mut found = colors(&mut renderer)?;
         if let Some(rounds) = Rounds::of(arguments, in_band[0]) {
-            let (means, took) = rounds.go_on(&mut renderer, &buffers, &view, (&lamps, &found), &bar)?;
+            let (means, noise, took) = rounds.go_on(&mut renderer, &view, (&lamps, &found), &bar)?;
             shading = shading.zip(took).map(|(one, more)| one + more);
             found = lamps.iter().zip(means.mean()).map(|(lamp, mean)| *lamp + mean.as_vec3()).collect();
             sum.rounds = sum.rounds.max(means.samples());
-            sum.noise = sum.noise.into_iter().chain(rounds.noise(&means, &lamps)).reduce(f64::max);
+            sum.noise = sum.noise.into_iter().chain(noise).reduce(f64::max);
         } else if arguments.reference.is_none() && arguments.shadow_level() != Shadows::Off {
             sum.rounds = 1;
         }
@@ -187,15 +194,14 @@ impl<'a> Rounds<'a> {
     }
 
     /// Goes on from what `seen` shows after the first round, before which there were `lamps` alone: the means
-    /// of what surfaces reflect.
+    /// of what surfaces reflect, their noise, and the time it took.
     fn go_on(
         &self,
         renderer: &mut SceneRenderer<'_>,
-        scene: &SceneBuffers,
         view: &View,
         (lamps, seen): (&[Vec3], &[Vec3]),
         bar: &ProgressBar,
-    ) -> Result<(Means, Option<Duration>), EngineError> {
+    ) -> Result<(Means, Option<f64>, Option<Duration>), EngineError> {
         let (mut means, mut total) = (Means::new(lamps.len()), Some(Duration::ZERO));
         let add = |means: &mut Means, before: &[Vec3], after: &[Vec3]| {
             let apart = before.iter().zip(after).map(|(a, b)| b.as_dvec3() - a.as_dvec3());
@@ -203,21 +209,21 @@ impl<'a> Rounds<'a> {
         };
         add(&mut means, lamps, seen);
         let mut before = seen.to_vec();
-        while means.samples() < MOST_ROUNDS && self.noise(&means, lamps).is_none_or(|noise| noise > self.most)
-        {
+        let mut noise = self.noise(&means, lamps);
+        while means.samples() < MOST_ROUNDS && noise.is_none_or(|noise| noise > self.most) {
             // Each half of the means has seeds that follow each other, whose rays complement each other
             let [half, index] = [means.samples() % 2, means.samples() / 2];
             let seed = view.seed.wrapping_add(half * (MOST_ROUNDS / 2) + index);
-            let quality = (view.surfaces, view.quality);
-            let took = shade_with_shadows(renderer, scene, quality, (self.arguments.shadow_level(), seed))?;
+            let took = view.shade(renderer, seed)?;
             total = total.zip(took).map(|(total, took)| total + took);
             // Each round is added to what is there
             let after = colors(renderer)?;
             add(&mut means, &before, &after);
             before = after;
+            noise = self.noise(&means, lamps);
             bar.set_message(format!("bands, {} rounds of shadow rays", means.samples()));
         }
-        Ok((means, total))
+        Ok((means, noise, total))
     }
 
     /// The noise of what is known so far.
@@ -241,22 +247,20 @@ struct View {
     /// The first of the band's seeds.
     seed: u32,
     light_count: usize,
+    /// What shadows are made with, for each pass; without shadows none.
+    shadowed: Vec<ShadowedView>,
 }
 
 /// Shades what a renderer sees, as the arguments say.
 fn shade(
     renderer: &mut SceneRenderer<'_>,
-    scene: &SceneBuffers,
     view: &View,
     arguments: &Arguments,
     bar: &ProgressBar,
 ) -> Result<(Option<Duration>, Option<TileCounts>), EngineError> {
-    let View { surfaces, quality, seed, light_count } = *view;
+    let View { surfaces, quality, seed, light_count, .. } = *view;
     let took = match (arguments.reference, arguments.tiles) {
-        (None, None) => {
-            let shadows = arguments.shadow_level();
-            shade_with_shadows(renderer, scene, (surfaces, quality), (shadows, seed))?
-        }
+        (None, None) => view.shade(renderer, seed)?,
         (None, Some(cull_threshold)) => {
             let options = ShadeOptions { quality, output: Output::Add, ..ShadeOptions::default() };
             let tiles = TileOptions { cull_threshold, ..TileOptions::default() };
@@ -287,18 +291,12 @@ fn shade(
     Ok((took, None))
 }
 
-/// Shades a view with shadows, by the random numbers of a seed, or without.
-fn shade_with_shadows(
-    renderer: &mut SceneRenderer<'_>,
-    scene: &SceneBuffers,
-    (surfaces, quality): (Effects, Quality),
-    (shadows, seed): (Shadows, u32),
-) -> Result<Option<Duration>, EngineError> {
-    let Shadows::Rays(shadow_rays, filter) = shadows else { return renderer.shade(surfaces, quality) };
-    let options = ShadeOptions { quality, shadow_rays, ..ShadeOptions::default() };
-    renderer.each_pass(surfaces, |renderer, surfaces| {
-        let options = ShadeOptions { surfaces, ..options };
-        let view = renderer.shadowed(scene, options, (filter, ShadowHistory::Off))?;
-        renderer.shade_shadowed(&view, seed)
-    })
+impl View {
+    /// Shades with shadows, by the random numbers of a seed, or without.
+    fn shade(&self, renderer: &mut SceneRenderer<'_>, seed: u32) -> Result<Option<Duration>, EngineError> {
+        if self.shadowed.is_empty() {
+            return renderer.shade(self.surfaces, self.quality);
+        }
+        renderer.shade_shadowed_passes(&self.shadowed, seed)
+    }
 }
