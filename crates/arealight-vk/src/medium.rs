@@ -315,7 +315,7 @@ fn constants_of(frame: &MediumFrame) -> Result<MediumConstants, Error> {
     if !is_amount(frame.extinction) {
         return wrong("extinction", "must be finite and not negative");
     }
-    if !(frame.anisotropy.abs() < 1.0) {
+    if frame.anisotropy.is_nan() || frame.anisotropy.abs() >= 1.0 {
         return wrong("anisotropy", "must be between -1 and 1");
     }
     if !(frame.nearest > 0.0 && frame.farthest > frame.nearest && frame.farthest.is_finite()) {
