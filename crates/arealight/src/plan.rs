@@ -294,6 +294,7 @@ pub fn shadow_filter_specialization(
 }
 
 /// How a medium is shaded.
+#[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct MediumOptions {
     /// Whether each sample has a ray over each light, which asks for what blocks it; else light passes
