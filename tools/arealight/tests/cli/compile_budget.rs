@@ -8,8 +8,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// Of a kind of light, with its shadows: processor time, in units of [`yardstick`]. The most is 14, of
-/// SwiftShader.
+/// Of a kind of light, with its shadows: processor time, in units of [`yardstick`]. A second
+/// driver takes up to 14.
 const UNITS: f64 = 20.0;
 /// Of the process at its largest, in MB. About 170 of them are a driver without any pipeline.
 const MEGABYTES: f64 = 500.0;
