@@ -220,21 +220,30 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalShaped local) {
     vec3 sum = vec3(0.0);
     vec3 within = vec3(0.0);
     vec3 from = local.low;
-    for (uint row = local.levels; row < local.levels_end; row++) {
-        vec4 level = arealight_bridge_profile(row);
-        float square = level.w * local.height;
-        if (square <= local.nearest) {
-            continue;
+    // The last ring ends where the light does
+    for (uint row = local.levels; row <= local.levels_end; row++) {
+        vec3 vector = all;
+        vec3 to = local.high;
+        bool is_last = row == local.levels_end;
+        if (!is_last) {
+            vec4 level = arealight_bridge_profile(row);
+            float square = level.w * local.height;
+            if (square <= local.nearest) {
+                continue;
+            }
+            is_last = square >= local.farthest;
+            if (!is_last) {
+                vector = arealight_level_vector(space, local, square, front);
+                to = level.xyz;
+            }
         }
-        if (square >= local.farthest) {
+        sum += arealight_profile_mean(local, lobe, from, to, vector - within) * (vector - within);
+        if (is_last) {
             break;
         }
-        vec3 vector = arealight_level_vector(space, local, square, front);
-        sum += arealight_profile_mean(local, lobe, from, level.xyz, vector - within) * (vector - within);
         within = vector;
-        from = level.xyz;
+        from = to;
     }
-    sum += arealight_profile_mean(local, lobe, from, local.high, all - within) * (all - within);
     return front * sum;
 }
 
