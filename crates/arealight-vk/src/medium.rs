@@ -358,7 +358,8 @@ mod tests {
             seed: 0,
         };
         let constants = constants_of(&good).unwrap();
-        assert_eq!((constants.columns_rows, constants.slices), (160 | 90 << 16, 64));
+        let [columns, rows] = [constants.columns_rows & 0xffff, constants.columns_rows >> 16];
+        assert_eq!([columns, rows, constants.slices], good.froxels);
         for (field, frame) in [
             ("froxels", MediumFrame { froxels: [160, 0, 64], ..good }),
             ("froxels", MediumFrame { froxels: [160, 90, 65536], ..good }),
