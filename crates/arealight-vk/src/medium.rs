@@ -28,8 +28,8 @@ pub struct MediumPassInfo {
     pub host_set: Option<vk::DescriptorSetLayout>,
 }
 
-/// The host's resources of a medium beyond those of its shade pass, of which it reads the lights and
-/// positions, and dims the radiance.
+/// What the pass binds beside the shade pass's resources, whose lights and positions it reads and whose
+/// radiance it attenuates.
 #[derive(Debug, Clone, Copy)]
 pub struct MediumResources {
     /// A 3D image of [`MediumPass::FORMAT`] with the usage `STORAGE`, of [`MediumFrame::froxels`]. The pass
