@@ -44,13 +44,25 @@ layout(push_constant, std430) uniform FormFactorConstants {
 // The polygon at hand, scaled by a power of two.
 vec3 polygon_anchor;
 uint polygon_first;
-float polygon_scale;
+int polygon_scale; // its exponent
 
-// `precise`: a compiler that multiplies the scale with another factor first loses an offset near float32's
-// largest number, because that product is denormal.
+// x times that, by its bits; denormal numbers are 0. Of a product a driver may multiply the scale with
+// another factor first, as NVIDIA's does, and a number near float32's largest is lost because that is
+// denormal.
+float scaled(float x) {
+    uint bits = floatBitsToUint(x);
+    int exponent = int(bits >> 23 & 0xffu);
+    int other = exponent + polygon_scale;
+    return exponent == 255 || other >= 255 ? x : exponent > 0 && other > 0
+        ? uintBitsToFloat((bits & 0x807fffffu) | uint(other) << 23) : 0.0;
+}
+
+vec3 scaled(vec3 v) {
+    return vec3(scaled(v.x), scaled(v.y), scaled(v.z));
+}
+
 vec3 polygon_offset(uint index) {
-    precise vec3 offset = offsets[polygon_first + index].xyz * polygon_scale;
-    return offset;
+    return scaled(offsets[polygon_first + index].xyz);
 }
 
 vec3 yardstick_vertex(uint index) {
@@ -122,8 +134,9 @@ void main() {
     for (uint i = 0u; i < count; i++) {
         largest = max(largest, arealight_max_component(offsets[polygon_first + i].xyz));
     }
-    polygon_scale = arealight_power_of_two_scale(arealight_max_component(polygon.anchor) + largest);
-    polygon_anchor = polygon.anchor * polygon_scale;
+    float extent = arealight_max_component(polygon.anchor) + largest;
+    polygon_scale = int(floatBitsToUint(arealight_power_of_two_scale(extent)) >> 23) - 127;
+    polygon_anchor = scaled(polygon.anchor);
     float square = 0.0;
     float sizes = dot(abs(polygon_anchor), vec3(1.0));
     for (uint i = 0u; i < count; i++) {

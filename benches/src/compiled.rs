@@ -2,12 +2,14 @@
 //! cycles, beside yardsticks. Nothing runs, and no GPU is needed: [`arealight_engine::host::null_hardware`].
 
 mod check;
+mod own_words;
 mod rows;
 mod text;
 
 pub(crate) use rows::path_cost;
 
 pub use check::{Check, Finding, OtherDriver, THROUGHPUT_TOLERANCE};
+pub use own_words::{OwnWords, of_device};
 pub use rows::{DEFERRED_YARDSTICK, Row, YARDSTICK, rows};
 
 use arealight_engine::host::HostError;

@@ -9,8 +9,9 @@ mod names;
 mod pictures;
 mod points;
 mod reference;
+mod results;
 mod text;
-mod timing;
+pub(crate) mod timing;
 
 pub use compare::{Comparison, compare};
 pub use errors::{Errors, SplitErrors};
@@ -18,6 +19,7 @@ pub use methods::{BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT, SHADE_
 pub use names::LevelNames;
 pub use pictures::{Picture, Pictures, STEPS_BESIDE_THE_TRUTH, View, beside_the_truth, yardstick_for};
 pub use reference::{PictureError, Reference};
+pub use results::results;
 pub use text::{READS, error_cells, number, percent};
 pub use timing::{Spread, Time};
 
@@ -134,6 +136,9 @@ pub struct EffectCost {
 pub struct Ladder {
     /// The device's name.
     pub device: String,
+    /// The driver's name and version.
+    #[serde(default)]
+    pub driver: String,
     /// Whether it is the processor: then times are its threads' processor time over their number.
     pub software: bool,
     /// The command to run it again.
@@ -234,6 +239,7 @@ pub fn run(
     let pictures = pictures::make(&engine, table, scene, options.reference, progress)?;
     let ladder = Ladder {
         device: host.device_name(),
+        driver: host.driver().to_owned(),
         software: is_software(host),
         command: String::new(),
         points: options.points,

@@ -5,13 +5,11 @@
 //! | [`school`] | the yardsticks: how others compute a form factor |
 //! | [`published`] | a table of the quality that others ship |
 //! | [`method`] | the ways to compute a form factor: every quality level of the library, and the yardsticks |
-//! | [`cost`] | the time of each level of the form factor, as a ratio to a yardstick's |
 //! | [`compiled`] | what a GPU's compiler makes of the kernels, on a machine without a GPU |
 //! | [`model`] | which paths the waves of our scenes take, and what a frame of them costs by the compiler's numbers |
 //! | [`ladder`] | the error and the time of every quality level, beside Monte Carlo |
 //! | [`textures`] | the time of filtering a light's texture |
 //! | [`footprints`] | the errors and the time of looking one up |
-//! | [`tiles`] | the time of frames by tiles, beside a yardstick and the same shading without |
 //! | [`kernel`] | the kernel that computes form factors of hard cases by one of them |
 //! | [`stability`] | every family of hard cases through every method, judged |
 //! | [`shapes`] | the kernel that evaluates disks, spheres and tubes |
@@ -31,7 +29,6 @@
 #![allow(clippy::missing_errors_doc, clippy::missing_panics_doc)] // what the types say
 
 pub mod compiled;
-pub mod cost;
 pub mod footprints;
 pub mod furnace;
 pub mod kernel;
@@ -55,4 +52,3 @@ pub mod stability;
 pub mod start;
 mod table;
 pub mod textures;
-pub mod tiles;

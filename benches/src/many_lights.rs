@@ -4,12 +4,11 @@ use crate::ladder::frame::processors;
 use crate::ladder::{number, percent};
 use crate::table::Table;
 use crate::textures::{clocked, is_software};
-use crate::tiles::{difference, floor, lamps};
-use arealight::LightTable;
 use arealight::plan::{Output, ShadeOptions, TileOptions};
+use arealight::{Light, LightShape, LightTable};
 use arealight_engine::host::Host;
 use arealight_engine::{Engine, EngineError, SceneRenderer, TiledView};
-use arealight_scene::{Scene, SceneBuffers};
+use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_vk::TableFormat;
 use glam::{DVec3, Vec3, Vec4};
 use serde::Serialize;
@@ -117,7 +116,7 @@ pub fn run(
     for count in &options.counts {
         let aspect = f64::from(options.size[0]) / f64::from(options.size[1]);
         let mut scene = floor(options.roughness, FLOOR, aspect);
-        scene.lights = lamps(*count, FLOOR, DVec3::ZERO);
+        scene.lights = lamps(*count, FLOOR);
         let mut frame = Frame::new(&engine, &scene, options)?;
         for way in &options.ways {
             rows.push(frame.measure(*way)?);
@@ -289,4 +288,60 @@ mod tests {
         assert!(text.contains("| 100 | all | 2.50 | 100 |"), "{text}");
         assert!(text.contains("| 12 | 1.20 % | 3.00 % |"), "{text}");
     }
+}
+
+/// Root mean square over mean, and the largest of a pixel over the pixel.
+fn difference(truth: &[Vec4], found: &[Vec4]) -> [f64; 2] {
+    let sum = |pixel: &Vec4| f64::from(pixel.x) + f64::from(pixel.y) + f64::from(pixel.z);
+    let (mut squares, mut mean, mut largest) = (0.0, 0.0, 0.0_f64);
+    for (truth, found) in truth.iter().map(sum).zip(found.iter().map(sum)) {
+        squares += (found - truth).powi(2);
+        mean += truth;
+        largest = largest.max((found - truth).abs() / truth.max(1e-30));
+    }
+    let count = truth.len().max(1) as f64;
+    [(squares / count).sqrt() / (mean / count).max(1e-30), largest]
+}
+
+/// A square floor of `side` metres and of this roughness about the origin, in y, which reflects half of what
+/// it scatters; and a camera from above that sees all of it in a picture of `aspect`. Without lights.
+fn floor(roughness: f32, side: f64, aspect: f64) -> Scene {
+    let sweep = include_bytes!("../../scenes/sweep.glb");
+    let mut scene = Scene::from_bytes(sweep, "floor").expect("the scene in the repository is valid");
+    let floor = scene.materials.iter().position(|material| material.name == "floor");
+    scene.triangles.retain(|triangle| Some(triangle.material as usize) == floor);
+    if let Some(material) = floor.and_then(|floor| scene.materials.get_mut(floor)) {
+        (material.material.base_color, material.material.roughness) = (Vec3::splat(0.5), roughness);
+    }
+    let middle = scene.bounds.center();
+    for corner in scene.triangles.iter_mut().flat_map(|triangle| &mut triangle.positions) {
+        *corner =
+            DVec3::new(corner.x - middle.x, 0.0, corner.z - middle.z).signum().with_y(0.0) * (0.5 * side);
+    }
+    scene.bounds = scene.triangles.iter().flat_map(|triangle| triangle.positions).collect();
+    let down = DVec3::new(0.0, -1.0, -1.0);
+    scene.cameras = vec![Camera::framing("from above", scene.bounds, down, DVec3::Y, aspect)];
+    scene.lights.clear();
+    scene.lamps.clear();
+    scene
+}
+
+/// Square lamps that face down over a floor of `side` metres about the origin, as many as a square
+/// holds; so high as half of what is between them.
+fn lamps(count: usize, side: f64) -> Vec<Light> {
+    let columns = (count as f64).sqrt().ceil() as usize;
+    let step = side / columns as f64;
+    let place = |at: usize| (at as f64 + 0.5) * step - 0.5 * side;
+    let lamp = |index: usize| {
+        let center = DVec3::new(place(index % columns), 0.5 * step, place(index / columns));
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corner = |(x, z): (f64, f64)| center + DVec3::new(x, 0.0, z) * (0.1 * step);
+        Light {
+            name: format!("lamp {index}"),
+            radiance: Vec3::splat(10.0),
+            shape: LightShape::Polygon(corners.map(corner).to_vec()),
+            ..Light::default()
+        }
+    };
+    (0..count).map(lamp).collect()
 }

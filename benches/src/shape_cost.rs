@@ -1,10 +1,9 @@
 //! What the form factor of a disk, a sphere or a tube costs on a device that crosses the horizon, and of the
 //! ways to a disk how far off they are: by the library's levels and by yardsticks.
 //!
-//! As in [`crate::cost`] every method runs in turn, round after round, and is read as a ratio to one of them
+//! Every method runs in turn, round after round, and is read as a ratio to one of them
 //! in the same round: here to a disk, exactly.
 
-use crate::cost::in_turn;
 use crate::ladder::Spread;
 use crate::shapes::{SHAPES, ShapeArguments, ShapeFunction, ellipse_arguments, tube_arguments};
 use crate::table::Table;
@@ -14,6 +13,7 @@ use arealight_engine::{EngineError, ListPass, Passes};
 use arealight_oracle::ellipse::{Ellipse, form_factor};
 use arealight_oracle::tube::{Ends, Tube};
 use arealight_vk::Resource;
+use bytemuck::Pod;
 use glam::DMat3;
 use serde::Serialize;
 
@@ -137,6 +137,23 @@ fn list(passes: &Passes, method: &ShapeMethod, repeats: u32) -> Result<List, Eng
     // SAFETY: The inputs are returned with it.
     let list = unsafe { passes.over_list((&SHAPES, &constants), &resources, WORK_ITEMS as u32, WORK_ITEMS) }?;
     Ok((list, inputs))
+}
+
+/// Runs a list of each method in turn, `rounds` times after a round that warms up: the seconds of each.
+fn in_turn<R: Pod, C: Pod>(
+    lists: &[ListPass<R, C>],
+    rounds: usize,
+) -> Result<Vec<Vec<f64>>, EngineError> {
+    let mut seconds = vec![vec![]; lists.len()];
+    for round in 0..=rounds {
+        for (list, seconds) in lists.iter().zip(&mut seconds) {
+            let took = list.run()?.as_secs_f64();
+            if round > 0 {
+                seconds.push(took);
+            }
+        }
+    }
+    Ok(seconds)
 }
 
 /// Measures every method in `rounds` rounds, after one that warms up.

@@ -33,6 +33,10 @@ struct BvhHit {
 // hit.distance and is to meet it.
 void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit);
 
+// How much wider a triangle is to rays, of its edges: of two that share one a ray meets one or both, however
+// a compiler rounds, and no light comes through between them.
+const float BVH_SEAM = 1e-6;
+
 // Whether a ray meets triangle `index` of these vertices, on either face, at a distance above 0 and below
 // `limit`; and where. What is seen edge-on is not met. Error of the distance: 1e-6 of the largest coordinate
 // over the cosine of incidence; a ray within as much of an edge may pass on either side of it. Source:
@@ -50,7 +54,8 @@ bool bvh_intersect(vec3 p0, vec3 p1, vec3 p2, uint index, vec3 origin, vec3 dire
     float v = dot(direction, q) * inverse;
     float distance = dot(edge2, q) * inverse;
     met = BvhHit(distance, index, vec2(u, v), determinant < 0.0);
-    return determinant != 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance < limit;
+    return determinant != 0.0 && min(u, v) >= -BVH_SEAM && u + v <= 1.0 + BVH_SEAM && distance > 0.0
+        && distance < limit;
 }
 
 // Whether a ray enters a node's box before `limit`.

@@ -80,20 +80,30 @@ LightList lights_of_tile(uvec2 tile) {
     return LightList(counts.x, counts.y, counts.z, is_listed, record + TILE_RECORD_HEADER);
 }
 
-// Shades the workgroup's tile, if the class has so many.
-void shade_tile() {
+// The workgroup's tile, if the class has so many.
+bool find_tile(out uvec2 tile) {
     uint index = gl_WorkGroupID.y * TILE_ROW + gl_WorkGroupID.x;
+    tile = uvec2(0u);
     if (index >= tile_lists[CLASS * TILE_CLASS_WORDS + 3u]) {
-        return;
+        return false;
     }
-    uvec2 tile = unpack_tile(tile_lists[class_list(CLASS) + index]);
-    shade_pixel(ivec2(tile) * TILE_SIDE + ivec2(gl_LocalInvocationID.xy), lights_of_tile(tile));
+    tile = unpack_tile(tile_lists[class_list(CLASS) + index]);
+    return true;
 }
 
+// One call of shade_pixel: drivers that inline what they compile would have it twice.
 void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    LightList list;
     if (BY_TILES) {
-        shade_tile();
+        uvec2 tile;
+        if (!find_tile(tile)) {
+            return;
+        }
+        pixel = ivec2(tile) * TILE_SIDE + ivec2(gl_LocalInvocationID.xy);
+        list = lights_of_tile(tile);
     } else {
-        shade_pixel(ivec2(gl_GlobalInvocationID.xy), lights_of_frame());
+        list = lights_of_frame();
     }
+    shade_pixel(pixel, list);
 }

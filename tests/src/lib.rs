@@ -29,9 +29,10 @@ pub use levels::{FORM_FACTORS, Level, Path};
 pub use points::{Random, glossy_surface, lambert_surface, point};
 pub use property::Property;
 
-use arealight_engine::Engine;
 use arealight_engine::host::testing::TestHost;
+use arealight_engine::{Engine, Host};
 use arealight_vk::TableFormat;
+use ash::vk::PhysicalDeviceType;
 
 /// A device with the built-in table. Fields go in this order, so that the host hears what was left behind.
 pub struct TestEngine {
@@ -53,10 +54,28 @@ impl std::ops::DerefMut for TestEngine {
     }
 }
 
+/// Whether a device rounds each operation once, to the nearest, as drivers that run on the processor do.
+/// Others may contract a product and a sum, each piece of code in its own way, and their divisions and roots
+/// are up to five units off.
+pub fn rounds_as_oracle(host: &Host) -> bool {
+    host.properties().device_type == PhysicalDeviceType::CPU
+}
+
 impl TestEngine {
     /// The engine on a validated device; `None` where there is no device and none is required.
     pub fn new() -> Option<Self> {
         Self::with_format(TableFormat::default())
+    }
+
+    /// As the function [`rounds_as_oracle`].
+    pub fn rounds_as_oracle(&self) -> bool {
+        rounds_as_oracle(self.host())
+    }
+
+    /// How far the same sums may differ by other code around them, over the largest: nothing where each
+    /// operation has one result.
+    pub fn rounding(&self) -> f32 {
+        if self.rounds_as_oracle() { 0.0 } else { 5e-7 }
     }
 
     /// As [`TestEngine::new`], with the table in another format.

@@ -250,7 +250,7 @@ def drawings():
     arealight = module()
     for draw in DRAWINGS:
         yield draw.__name__.replace("_", "-") + ".svg", draw(arealight)
-    found, compiled = (json.loads((ROOT / "benches/data" / name).read_text()) for name in ("lavapipe.json", "compiled.json"))
+    found, compiled = (json.loads((ROOT / name).read_text()) for name in ("docs/results/nvidia-h200.json", "benches/data/compiled.json"))
     yield "error-cost.svg", error_cost(found, compiled)
 
 

@@ -187,7 +187,7 @@ def error_cost(found, compiled, family="navi21"):
     made, (left, right) = figure(960, 430, columns=2, sharey=True)
     left.set_xlabel(f"{family}: compiled cost, clipless = 1 (inverse throughput; no time)")
     left.set_ylabel("error: RMSE over the mean of the truth")
-    right.set_xlabel(f"{found['device'].split(' (')[0]}, on a CPU: time, clipless = 1")
+    right.set_xlabel(f"{found['device'].split(' (')[0]}{', on a CPU' * found['software']}: time, clipless = 1")
     colour_key(left, [(OURS, "Arealight's quality levels"), (THEIRS, "what engines ship; ° published quality")])
     scatter(left, by_compiler)
     scatter(right, by_clock)

@@ -1,7 +1,7 @@
 //! What a lookup costs: the time of the eval kernel over the same points, as ratios within the same run.
 
 use super::{EFFECTS, METHODS, untextured};
-use crate::cost::quantile;
+use crate::ladder::timing::quantile;
 use crate::ladder::Spread;
 use crate::textures::{is_software, timed};
 use arealight::kernels::Kernel;

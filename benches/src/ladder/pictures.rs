@@ -187,7 +187,7 @@ fn render(
         let error = reference.error_of(&reflected, &is_judged);
         let seconds =
             (0..view.repeats).map(|_| frame.run(&ready, u32::MAX, 0)).collect::<Result<Vec<_>, _>>()?;
-        let milliseconds = 1e3 * crate::cost::quantile(&seconds, 0.5);
+        let milliseconds = 1e3 * super::timing::quantile(&seconds, 0.5);
         shown.push(Picture { name, reflected, error, milliseconds });
         progress(LONG);
     }

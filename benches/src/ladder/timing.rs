@@ -2,9 +2,16 @@
 
 use super::frame::{Frame, Ready};
 use super::methods::Method;
-use crate::cost::quantile;
 use arealight_engine::EngineError;
 use serde::{Deserialize, Serialize};
+
+/// The value below which so large a part of values is.
+pub(crate) fn quantile(values: &[f64], part: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let index = (part * (sorted.len().max(1) - 1) as f64).round() as usize;
+    sorted.get(index).copied().unwrap_or(f64::NAN)
+}
 
 /// A median with its quartiles.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -21,7 +21,7 @@ pub use freeze::freeze;
 /// The module without the branches that are never taken where specialisation constants have these values
 /// (pairs of id and value; the others have their defaults), without the functions that then nobody calls, and
 /// without the bindings that then nothing uses. It has the same constants and entry points, is specialised in
-/// the same way, and computes the same to the bit.
+/// the same way, and computes the same, to the bit where the compiler contracts no sums.
 ///
 /// Code that isn't understood stays as it is: a `switch`, what is computed of other than integers of 32 bits
 /// and truth values; and whole modules that have debug information beyond the core's

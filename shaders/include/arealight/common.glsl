@@ -43,21 +43,6 @@ float arealight_max_component(vec3 v) {
     return max(a.x, max(a.y, a.z));
 }
 
-// v divided by its length, for vectors of any length from 1e-37 to 3e38; `fallback` for the zero vector and
-// where a component is NaN or infinite. The result's length is 1 to 2e-7. Where the driver takes denormal
-// numbers for zero, as Vulkan allows, components below 1.2e-38 are lost: the direction is exact to 1.2e-7 for
-// lengths from 1e-31.
-vec3 arealight_normalize_or(vec3 v, vec3 fallback) {
-    float largest = arealight_max_component(v);
-    if (!(largest >= 1e-37 && largest <= 3e38)) {
-        return fallback;
-    }
-    vec3 scaled = v / largest;
-    float square = dot(scaled, scaled);
-    // NaN in a smaller component reaches the square
-    return square >= 1.0 ? scaled * inversesqrt(square) : fallback;
-}
-
 // A perceptual roughness within [smallest, 1]; NaN counts as the smallest.
 float arealight_clamped_roughness(float roughness, float smallest) {
     return roughness > smallest ? min(roughness, 1.0) : smallest;
@@ -68,6 +53,25 @@ float arealight_clamped_roughness(float roughness, float smallest) {
 float arealight_power_of_two_scale(float x) {
     uint exponent = clamp(floatBitsToUint(x) >> 23, 4u, 250u);
     return uintBitsToFloat((254u - exponent) << 23);
+}
+
+// v divided by its length, for vectors of any length from 1e-37 to 3e38; `fallback` for the zero vector and
+// where a component is NaN or infinite. The result's length is 1 to 2e-7. Where the driver takes denormal
+// numbers for zero, as Vulkan allows, components below 1.2e-38 are lost: the direction is exact to 1.2e-7 for
+// lengths from 1e-31.
+//
+// It is scaled by its largest component's power of two, not divided by that: x / x may be less than 1, and
+// anything where x is above 2^126, by the precision that Vulkan asks of a division. The factor keeps the root
+// of a unit vector's square away from powers of two, above which float32 is coarse.
+vec3 arealight_normalize_or(vec3 v, vec3 fallback) {
+    float largest = arealight_max_component(v);
+    if (!(largest >= 1e-37 && largest <= 3e38)) {
+        return fallback;
+    }
+    vec3 scaled = v * (0.7 * arealight_power_of_two_scale(largest));
+    float square = dot(scaled, scaled);
+    // NaN in a smaller component reaches the square
+    return square >= 0.48 ? scaled * inversesqrt(square) : fallback;
 }
 
 // AREALIGHT_HORIZON_WIDTH in a linear space: less where heights become lower than lengths.

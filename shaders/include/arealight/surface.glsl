@@ -112,7 +112,8 @@ float arealight_coat_share(ArealightCoat coat, float cos_view) {
 }
 
 // The frame of a normal and a view, of any length. Orthonormal to 3e-7 for every input, also a view parallel
-// to the normal (any tangent will do there), zero vectors and NaN (which count as the z axis).
+// to the normal (any tangent will do there, and within 1e-6 of it, where rounding would make one: sin_view is
+// exact to 1e-6), zero vectors and NaN (which count as the z axis).
 // Gram-Schmidt twice: one pass leaves an error of 1 where the view is within 1e-7 of the normal.
 ArealightFrame arealight_surface_frame(vec3 normal, vec3 view) {
     ArealightFrame frame;
@@ -121,7 +122,7 @@ ArealightFrame arealight_surface_frame(vec3 normal, vec3 view) {
 
     // Project the view onto the surface; where nothing is left, take the axis farthest from the normal
     vec3 tangent = to_viewer - frame.normal * dot(frame.normal, to_viewer);
-    if (dot(tangent, tangent) < 1e-13) {
+    if (dot(tangent, tangent) < 1e-12) {
         vec3 axis = abs(frame.normal.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
         tangent = axis - frame.normal * dot(frame.normal, axis);
     }

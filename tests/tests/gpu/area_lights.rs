@@ -114,7 +114,12 @@ fn what_blocks_darkens_and_what_does_not_changes_nothing() {
             area_lights.set_blockers(&Blockers::new(&[[a, b, c], [a, c, d]]).unwrap()).unwrap();
             let dark = frame(area_lights, 1);
             let black = if output == Output::Add { BEFORE } else { Vec4::ZERO };
-            assert!(dark.iter().all(|texel| texel.truncate() == black.truncate()), "{:?}", dark[0]);
+            // What is taken away may be rounded in another way than what was there
+            let brightest =
+                free.iter().fold(0.0, |most: f32, texel| most.max(texel.truncate().max_element()));
+            let left = dark.iter().map(|texel| (*texel - black).truncate().abs().max_element());
+            let left = left.fold(0.0, f32::max);
+            assert!(left <= engine.rounding() * brightest, "{left:e} of {brightest}");
             area_lights.set_blockers(&Blockers::new(&[]).unwrap()).unwrap();
             assert_eq!(frame(area_lights, 0), free);
             // The twin: there was something to darken

@@ -192,7 +192,7 @@ fn objects_are_named_and_commands_labelled_where_the_host_can() {
         let pass = ShadePass::new(&context, options).unwrap();
         // What is not recorded has no label either
         let frame =
-            ShadeFrame { size: [u32::MAX, 8], lights: LightSummary::default(), ..ShadeFrame::default() };
+            ShadeFrame { size: [8, u32::MAX], lights: LightSummary::default(), ..ShadeFrame::default() };
         let none = vk::DescriptorSet::null();
         engine.host().submit(|commands| drop(pass.record(commands, none, &frame).unwrap_err())).unwrap();
         // A pipeline is named once it is made

@@ -50,7 +50,7 @@ fn frames_that_cannot_be_shaded_are_refused_by_field() {
                 ShadeFrame { position_from_clip: Some(Mat4::IDENTITY * f32::INFINITY), ..frame() },
                 "position_from_clip",
             ),
-            (ShadeFrame { size: [u32::MAX, 8], ..frame() }, "groups"),
+            (ShadeFrame { size: [8, u32::MAX], ..frame() }, "groups"),
         ] {
             // SAFETY: Nothing is recorded where an error is returned, so the set need not be written.
             let error = unsafe { pass.record(commands, set, &wrong) }.unwrap_err();

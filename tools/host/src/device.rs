@@ -2,6 +2,7 @@
 
 use crate::error::{HostError, NameCall as _};
 use crate::instance::{Instance, version_text};
+use crate::listing::driver;
 use crate::null_hardware::is_null_hardware;
 use crate::swapchain::Surface;
 use crate::validation::{Message, MessageLog, Validation};
@@ -63,6 +64,7 @@ struct Inner {
     device: ash::Device,
     queue_family: u32,
     timestamp_valid_bits: u32,
+    driver: String,
     queue: Mutex<vk::Queue>,
     /// `None` only while the host is being dropped: the allocator frees its memory before the device goes.
     allocator: Mutex<Option<Allocator>>,
@@ -100,6 +102,7 @@ impl Host {
         let found = candidates(&instance, queue, surface.as_ref())?;
         let candidate = choose(found, wanted.as_deref())?;
         let (physical_device, queue_family) = (candidate.physical_device, candidate.queue_family);
+        let driver = driver(&instance, &candidate);
 
         // Enable nothing optional unless asked
         // SAFETY: The physical device is of this instance, which is alive; for both calls.
@@ -144,6 +147,7 @@ impl Host {
             device,
             queue_family,
             timestamp_valid_bits: candidate.timestamp_valid_bits,
+            driver,
             queue: Mutex::new(queue),
             allocator: Mutex::new(Some(allocator)),
             enabled_features,
@@ -196,6 +200,11 @@ impl Host {
     /// The features that the device was made with.
     pub fn enabled_features(&self) -> &vk::PhysicalDeviceFeatures {
         &self.inner.enabled_features
+    }
+
+    /// The driver's name and version.
+    pub fn driver(&self) -> &str {
+        &self.inner.driver
     }
 
     /// Bits of the queue's timestamps that count; 0 where it has none.
@@ -346,7 +355,7 @@ fn candidate(
 }
 
 /// The candidate that is asked for, else the first of the best kind.
-fn choose(candidates: Vec<Candidate>, wanted: Option<&str>) -> Result<Candidate, HostError> {
+pub(crate) fn choose(candidates: Vec<Candidate>, wanted: Option<&str>) -> Result<Candidate, HostError> {
     let (usable, others): (Vec<_>, Vec<_>) =
         candidates.into_iter().partition(|candidate| candidate.lack.is_none());
     if usable.is_empty() {

@@ -5,7 +5,7 @@
 //! `VK_KHR_pipeline_executable_properties` says of them. The loader and the driver read the variables when
 //! they start, so a process must be started with them ([`set_environment`]).
 
-use crate::device::candidates;
+use crate::device::{Candidate, candidates, choose};
 use crate::error::{HostError, NameCall as _};
 use crate::instance::Instance;
 use crate::listing::driver;
@@ -102,7 +102,18 @@ pub struct Statistics {
     pub seconds: Option<f64>,
 }
 
-/// A device of null hardware. It has no queue that could be submitted to.
+/// What a driver says of a shader, in its own words.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Said {
+    /// Invocations a wave.
+    pub subgroup_size: u32,
+    /// Names with values, in the driver's order.
+    pub numbers: Vec<(String, u64)>,
+    /// Processor time that making the pipeline took, in seconds; `None` where the system does not tell.
+    pub seconds: Option<f64>,
+}
+
+/// A device that compiles and is submitted nothing to: of null hardware, or any that gives statistics.
 pub struct Compiler {
     executables: ash::khr::pipeline_executable_properties::Device,
     device: ash::Device,
@@ -125,9 +136,24 @@ impl Compiler {
         let Some(null) = found.into_iter().find(|one| is_null_hardware(&one.name)) else {
             return Err(HostError::NoNullHardware { found: names });
         };
+        Self::of(instance, null)
+    }
+
+    /// Opens the device that is asked for as [`crate::HostOptions::device`] does.
+    ///
+    /// # Errors
+    /// [`HostError::NoDevice`] and its like where there is none, [`HostError::MissingFeature`] where it gives
+    /// no statistics.
+    pub fn of_device(wanted: Option<&str>) -> Result<Self, HostError> {
+        let instance = Instance::new(Validation::Off)?;
+        let found = choose(candidates(&instance, vk::QueueFlags::COMPUTE, None)?, wanted)?;
+        Self::of(instance, found)
+    }
+
+    fn of(instance: Instance, found: Candidate) -> Result<Self, HostError> {
         let extensions = [vk::KHR_PIPELINE_EXECUTABLE_PROPERTIES_NAME.as_ptr()];
         let queues = [vk::DeviceQueueCreateInfo::default()
-            .queue_family_index(null.queue_family)
+            .queue_family_index(found.queue_family)
             .queue_priorities(&[1.0])];
         let mut statistics = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
             .pipeline_executable_info(true);
@@ -137,7 +163,7 @@ impl Compiler {
             .push_next(&mut statistics);
         // SAFETY: What the info points to lives until the call returns, and the instance as long as the
         // device.
-        let device = unsafe { instance.raw.create_device(null.physical_device, &info, None) };
+        let device = unsafe { instance.raw.create_device(found.physical_device, &info, None) };
         let device = device.map_err(|result| match result {
             vk::Result::ERROR_EXTENSION_NOT_PRESENT | vk::Result::ERROR_FEATURE_NOT_PRESENT => {
                 HostError::MissingFeature("VK_KHR_pipeline_executable_properties")
@@ -148,8 +174,8 @@ impl Compiler {
         Ok(Self {
             executables,
             device,
-            driver: driver(&instance, &null),
-            name: null.name,
+            driver: driver(&instance, &found),
+            name: found.name,
             _instance: instance,
         })
     }
@@ -167,9 +193,8 @@ impl Compiler {
     /// Makes a pipeline of a shader, and reads what the compiler says of it.
     ///
     /// # Errors
-    /// [`HostError::Vulkan`] where the pipeline cannot be made, [`HostError::MissingStatistic`] where the
-    /// driver does not say all of [`Statistics`].
-    pub fn statistics(&self, shader: &ComputeShader) -> Result<Statistics, HostError> {
+    /// [`HostError::Vulkan`] where the pipeline cannot be made.
+    pub fn said(&self, shader: &ComputeShader) -> Result<Said, HostError> {
         let mut made = Made::none(&self.device);
         made.make_layout(shader)?;
         let before = thread_seconds();
@@ -187,11 +212,23 @@ impl Compiler {
         // executable.
         let said = unsafe { self.executables.get_pipeline_executable_statistics(&info) };
         let said = said.named("vkGetPipelineExecutableStatisticsKHR")?;
+        let name = |one: &vk::PipelineExecutableStatisticKHR<'_>| {
+            one.name_as_c_str().unwrap_or_default().to_string_lossy().into_owned()
+        };
+        let numbers = said.iter().filter_map(|one| Some((name(one), value(one)?))).collect();
+        Ok(Said { subgroup_size, numbers, seconds })
+    }
+
+    /// What RADV says of a shader.
+    ///
+    /// # Errors
+    /// As [`Self::said`], and [`HostError::MissingStatistic`] where the driver does not say all of
+    /// [`Statistics`].
+    pub fn statistics(&self, shader: &ComputeShader) -> Result<Statistics, HostError> {
+        let Said { subgroup_size, numbers, seconds } = self.said(shader)?;
         let number = |name: &'static str| {
-            let one = said
-                .iter()
-                .find(|one| one.name_as_c_str().is_ok_and(|said| said.to_bytes() == name.as_bytes()));
-            one.and_then(value).ok_or(HostError::MissingStatistic(name))
+            let one = numbers.iter().find(|(said, _)| said == name);
+            one.map(|(_, value)| *value).ok_or(HostError::MissingStatistic(name))
         };
         Ok(Statistics {
             subgroup_size,

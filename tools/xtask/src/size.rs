@@ -6,15 +6,15 @@ use std::process::Command;
 
 /// The most lines of code: Rust, GLSL, Python, C++ and shell, without the generated header.
 const MOST_LINES: usize = 121_500;
-/// The most words of README.md and docs/, without the tables of docs/data/.
-const MOST_WORDS: usize = 40_700;
+/// The most words of README.md and docs/, without tables that commands write.
+const MOST_WORDS: usize = 41_100;
 /// The most characters of a line of Rust, GLSL and Markdown.
 const WIDTH: usize = 110;
 
 const CODE: [&str; 12] = ["rs", "glsl", "comp", "frag", "vert", "py", "c", "cpp", "h", "hpp", "sh", "wgsl"];
 const IS_NARROW: [&str; 6] = ["rs", "glsl", "comp", "frag", "vert", "md"];
 /// Tables that commands write.
-const DATA: &str = "docs/data/";
+const DATA: [&str; 2] = ["docs/data/", "docs/results/"];
 const GENERATED: &str = "crates/arealight-capi/include/arealight.h";
 
 /// Whether the checkout keeps the limits.
@@ -23,6 +23,7 @@ pub fn run(root: &Path) -> Result<bool, TaskError> {
     for name in files(root)? {
         let path = root.join(&name);
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let is_data = DATA.iter().any(|folder| name.starts_with(folder));
         let is_code = CODE.contains(&ending) && name != GENERATED;
         // A file that git has may be deleted
         if !(is_code || ending == "md") || !path.exists() {
@@ -31,10 +32,10 @@ pub fn run(root: &Path) -> Result<bool, TaskError> {
         let text = std::fs::read_to_string(&path).map_err(TaskError::file(&path))?;
         if is_code {
             lines += text.lines().count();
-        } else if name == "README.md" || name.starts_with("docs/") && !name.starts_with(DATA) {
+        } else if name == "README.md" || name.starts_with("docs/") && !is_data {
             words += text.split_whitespace().count();
         }
-        if IS_NARROW.contains(&ending) && !name.starts_with(DATA) {
+        if IS_NARROW.contains(&ending) && !is_data {
             for (number, width) in wide_lines(&text, ending == "md") {
                 eprintln!("{name}:{number}: error: {width} characters, at most {WIDTH}");
                 wide += 1;

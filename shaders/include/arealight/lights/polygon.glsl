@@ -100,21 +100,28 @@ vec3 arealight_outline_by_difference(mat3 space, vec3 center, mat3 to_frame, uin
     ArealightAnchor anchor = arealight_anchor(space * center, sqrt(extent), arealight_horizon_width(space),
                                               front);
     ArealightDifferenceOutline outline = arealight_difference_begin();
-    vec3 previous = to_frame * arealight_bridge_vertex(end - 1u);
-    for (uint index = first; index < end; index++) {
-        vec3 offset = to_frame * arealight_bridge_vertex(index);
-        // Heights above the surface's horizon
+    // Begins at the last vertex. Each has its height over the surface's horizon from one place in the code,
+    // and keeps it for both of its edges: computed twice, a compiler may round it to either side
+    vec3 previous = vec3(0.0);
+    float previous_height = 0.0;
+    for (uint step = 0u; step <= end - first; step++) {
+        vec3 offset = to_frame * arealight_bridge_vertex(step == 0u ? end - 1u : first + step - 1u);
         float height = center.z + offset.z;
-        float previous_height = center.z + previous.z;
-        if (AREALIGHT_CLIPS_AT_SURFACE && (height > 0.0) != (previous_height > 0.0)) {
-            vec3 cut = (offset * previous_height - previous * height) / (previous_height - height);
-            arealight_difference_to(outline, anchor, arealight_vertex(anchor, space * cut));
+        bool is_above = !AREALIGHT_CLIPS_AT_SURFACE || height > 0.0;
+        if (step > 0u) {
+            if (AREALIGHT_CLIPS_AT_SURFACE && is_above != (previous_height > 0.0)) {
+                vec3 cut = (offset * previous_height - previous * height) / (previous_height - height);
+                // On the horizon exactly, so that Lambert's lobe does not clip it once more by the last bit
+                cut.z = -center.z;
+                arealight_difference_to(outline, anchor, arealight_vertex(anchor, space * cut));
+            }
+            if (is_above) {
+                arealight_difference_to(outline, anchor, arealight_vertex(anchor, space * offset));
+            }
+            outline.squares += dot(offset, offset);
         }
-        if (!AREALIGHT_CLIPS_AT_SURFACE || height > 0.0) {
-            arealight_difference_to(outline, anchor, arealight_vertex(anchor, space * offset));
-        }
-        outline.squares += dot(offset, offset);
         previous = offset;
+        previous_height = height;
     }
     return arealight_difference_vector(outline, anchor);
 }

@@ -8,6 +8,7 @@ mod lights;
 mod materials;
 mod page;
 mod pictures;
+mod results;
 mod shadows;
 mod stability;
 mod textures;
@@ -45,6 +46,7 @@ enum Bench {
     Lights(lights::Arguments),
     Materials(materials::Arguments),
     Pictures(pictures::Arguments),
+    Results(results::Arguments),
     Shadows(shadows::Arguments),
     Stability(stability::Arguments),
     Textures(textures::Arguments),
@@ -59,6 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         Some(Bench::Lights(arguments)) => lights::run(arguments),
         Some(Bench::Materials(arguments)) => materials::run(arguments),
         Some(Bench::Pictures(arguments)) => pictures::run(arguments),
+        Some(Bench::Results(arguments)) => results::run(arguments),
         Some(Bench::Shadows(arguments)) => shadows::run(arguments),
         Some(Bench::Stability(arguments)) => stability::run(arguments),
         Some(Bench::Textures(arguments)) => textures::run(arguments),
@@ -73,7 +76,7 @@ struct Ends {
     /// Print JSON instead of the tables. Numbers that are not finite are null.
     #[arg(long)]
     json: bool,
-    /// Write that JSON.
+    /// Write that JSON, which has nothing of the machine but its device's and driver's names.
     #[arg(long, value_name = "FILE")]
     save: Option<PathBuf>,
     /// Write the tables as Markdown.

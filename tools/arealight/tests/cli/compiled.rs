@@ -120,6 +120,8 @@ fn what_cannot_be_compiled_is_said() {
     assert_eq!(output.status.code(), Some(2));
     let output = compile(&["--check", "/nonexistent/compiled.json"]);
     assert_eq!(output.status.code(), Some(3), "{}", said(&output));
+    let output = compile(&["--device", "no such device", "--only", "texture_load"]);
+    assert_eq!(output.status.code(), Some(4), "{}", said(&output));
 
     if radv_or_skip().is_none() {
         return;

@@ -143,3 +143,26 @@ fn a_picture_goes_through_a_pipe() {
     assert!(said.contains("picture  - (32x18"), "{said}");
     assert_eq!(names(folder.path()), [""; 0]);
 }
+
+#[test]
+fn the_page_of_results_is_made_of_the_files() {
+    let there = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/results");
+    let folder = tempfile::tempdir().unwrap();
+    for name in names(&there).iter().filter(|name| name.ends_with(".json")) {
+        std::fs::copy(there.join(name), folder.path().join(name)).unwrap();
+    }
+    let page = || {
+        let output = run(folder.path(), &["bench", "results", "."]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        std::fs::read_to_string(folder.path().join("README.md")).unwrap()
+    };
+    let checked_in = std::fs::read_to_string(there.join("README.md")).unwrap();
+    assert!(page() == checked_in, "run `arealight bench results`");
+    // The twins: of one file less it is another page, and of none there is no page
+    std::fs::remove_file(folder.path().join("lavapipe.json")).unwrap();
+    assert!(page() != checked_in);
+    let empty = tempfile::tempdir().unwrap();
+    let output = run(empty.path(), &["bench", "results", "."]);
+    assert!(!output.status.success() && names(empty.path()).is_empty());
+    assert!(String::from_utf8_lossy(&output.stderr).contains("arealight bench --save"));
+}

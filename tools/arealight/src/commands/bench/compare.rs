@@ -25,7 +25,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 }
 
 /// Reads what `arealight bench --save FILE` wrote.
-fn read(path: &Path) -> Result<Ladder, Failure> {
+pub(super) fn read(path: &Path) -> Result<Ladder, Failure> {
     let text = std::fs::read_to_string(path).map_err(|error| Failure::input(path, error))?;
     serde_json::from_str(&text).map_err(|error| {
         Failure::input(path, format!("{error}; write one with `arealight bench --save {}`", path.display()))

@@ -6,8 +6,8 @@ mod model;
 use super::{document, write};
 use crate::failure::Failure;
 use crate::output::{self, print};
-use crate::verdict;
-use arealight_benches::compiled::{Check, Compiled, matching, rows};
+use crate::{progress, verdict};
+use arealight_benches::compiled::{Check, Compiled, Row, matching, of_device, rows};
 use arealight_benches::sections::Markers;
 use arealight_engine::host::null_hardware::driver_file;
 use std::path::{Path, PathBuf};
@@ -58,6 +58,11 @@ pub struct Arguments {
     /// (lavapipe will do), times what each path costs by these statistics. Beside the clipless method.
     #[arg(long, conflicts_with_all = ["only", "check", "update", "json", "save"])]
     model: bool,
+    /// Compile by this device's own driver, which must have VK_KHR_pipeline_executable_properties, and print
+    /// what it says of each row in its own words: a part of the device's name, or its number.
+    #[arg(long, value_name = "NAME|NUMBER",
+        conflicts_with_all = ["family", "check", "update", "model", "on_null_hardware"])]
+    device: Option<String>,
     /// Compile here, where the environment names the driver and the family, and print each row as it is done.
     #[arg(long, hide = true, conflicts_with_all = ["json", "save", "markdown", "check", "update"])]
     on_null_hardware: bool,
@@ -84,6 +89,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     if arguments.on_null_hardware {
         return driver::compile_here(&wanted);
+    }
+
+    if let Some(device) = &arguments.device {
+        return by_device(arguments, device, &wanted);
     }
 
     // Look at every file before the work
@@ -128,6 +137,25 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         .map_err(|error| Failure::NoProgram(error.to_string()))?;
     eprint!("{}", verdict::for_stderr(&check.to_text(UPDATE)));
     Ok(if check.passes() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// The rows by a device's own driver.
+fn by_device(arguments: &Arguments, device: &str, wanted: &[Row]) -> Result<ExitCode, Failure> {
+    for path in [&arguments.save, &arguments.markdown].into_iter().flatten() {
+        output::check(path, None)?;
+    }
+    let progress = progress::bar(wanted.len() as u64, "rows");
+    let found = of_device(Some(device), wanted, &|| progress.inc(1));
+    progress.finish_and_clear();
+    let found = found.map_err(|error| Failure::Device(error.to_string()))?;
+    if let Some(path) = &arguments.markdown {
+        write(path, &found.to_markdown())?;
+    }
+    let json = serde_json::to_string_pretty(&found).unwrap_or_default() + "\n";
+    if let Some(path) = &arguments.save {
+        write(path, &json)?;
+    }
+    print(&if arguments.json { json } else { found.to_text() })
 }
 
 /// The rows' names, a line each.
