@@ -5,7 +5,7 @@ pub(crate) mod shadowed;
 pub(crate) mod tiled;
 
 use crate::host::{Buffer, DescriptorPool, Usage};
-use crate::{BoundPass, Engine, EngineError, GBuffer};
+use crate::{Engine, EngineError, GBuffer};
 use arealight::gpu::ShadeConstants;
 use arealight::kernels::{Binding, Kernel};
 use arealight::plan::{Output, ShadeOptions};
@@ -16,7 +16,8 @@ use arealight_tool_kernels::gpu::{ReferenceConstants, VisibilityConstants};
 use arealight_tool_kernels::kernels::{COUPLED, REFERENCE, SHADOWS, VISIBILITY};
 use arealight_vk::{Resource, ShadeFrame, ShadeResources};
 use ash::vk;
-use glam::{DVec3, Vec4};
+use bytemuck::Pod;
+use glam::{DVec3, Vec3, Vec4};
 use std::time::Duration;
 
 /// What the kernels call the buffers of a scene.
@@ -210,53 +211,54 @@ impl<'a> SceneRenderer<'a> {
     pub fn reference(
         &mut self,
         reference: Reference,
-        mut progress: impl FnMut(u32),
+        progress: impl FnMut(u32),
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
+        let Reference { samples, shadows, coupled, seed } = reference;
+        let specialization = [(SHADOWS, shadows.into()), (COUPLED, coupled.into())];
+        self.sampled(
+            (&REFERENCE, &specialization),
+            (samples, shadows),
+            progress,
+            |first_sample, sample_count| ReferenceConstants {
+                camera: self.camera.position().to_array(),
+                light_count: self.lights.light_count,
+                first_sample,
+                sample_count,
+                weight: (f64::from(sample_count) / f64::from(samples)) as f32,
+                seed,
+                shape_count: self.lights.shape_count,
+            },
+        )
+    }
+
+    /// Runs a kernel of Monte Carlo until all samples are taken, by the constants of each dispatch: of its
+    /// first sample, and how many there are.
+    fn sampled<C: Pod>(
+        &self,
+        (kernel, specialization): (&'static Kernel, &[(u32, u32)]),
+        (samples, shadows): (u32, bool),
+        mut progress: impl FnMut(u32),
+        constants: impl Fn(u32, u32) -> C,
+    ) -> Result<Option<Duration>, EngineError> {
         let light_sampling = self.engine.storage("light sampling", &self.sampling.lights)?;
         let light_triangles = self.engine.storage("light triangles", &self.sampling.triangles)?;
-        let resources = self.bound_to(
-            &REFERENCE,
-            &[("light_sampling", &light_sampling), ("light_triangles", &light_triangles)],
-        );
-        let pass = self.engine.pass(
-            &REFERENCE,
-            &[(SHADOWS, reference.shadows.into()), (COUPLED, reference.coupled.into())],
-            &resources,
-        )?;
-
+        let own = [("light_sampling", &light_sampling), ("light_triangles", &light_triangles)];
+        let pass = self.engine.pass(kernel, specialization, &self.bound_to(kernel, &own))?;
         let mut total = Some(Duration::ZERO);
         let mut done = 0;
-        while done < reference.samples {
-            let sample_count = self.samples_a_dispatch(reference.shadows).min(reference.samples - done);
-            let took = self.reference_step(&pass, done, sample_count, reference)?;
+        while done < samples {
+            let count = self.samples_a_dispatch(shadows).min(samples - done);
+            let constants = constants(done, count);
+            let took = self.engine.host().try_submit_timed(|commands: vk::CommandBuffer| {
+                self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
+                pass.record(commands, &constants, self.items())
+            })?;
             total = total.zip(took).map(|(total, took)| total + took);
-            done += sample_count;
+            done += count;
             progress(done);
         }
         Ok(total)
-    }
-
-    fn reference_step(
-        &self,
-        pass: &BoundPass,
-        first_sample: u32,
-        sample_count: u32,
-        Reference { samples, seed, .. }: Reference,
-    ) -> Result<Option<Duration>, EngineError> {
-        let constants = ReferenceConstants {
-            camera: self.camera.position().to_array(),
-            light_count: self.lights.light_count,
-            first_sample,
-            sample_count,
-            weight: (f64::from(sample_count) / f64::from(samples)) as f32,
-            seed,
-            shape_count: self.lights.shape_count,
-        };
-        self.engine.host().try_submit_timed(|commands: vk::CommandBuffer| {
-            self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
-            pass.record(commands, &constants, self.items())
-        })
     }
 
     /// So many that a dispatch takes about a second on a CPU and far less on a GPU, whose driver may reset
@@ -273,6 +275,13 @@ impl<'a> SceneRenderer<'a> {
         self.ensure_visible()?;
         let texels: Vec<[f32; 4]> = self.g_buffer.radiance.download(Usage::COMPUTE_WRITE)?;
         Ok(texels.into_iter().map(Vec4::from_array).collect())
+    }
+
+    /// Puts colours into the radiance image in the place of what was shaded, rows from the top.
+    pub fn show(&mut self, colors: &[Vec3]) -> Result<(), EngineError> {
+        self.ensure_visible()?;
+        let texels: Vec<[f32; 4]> = colors.iter().map(|color| color.extend(1.0).to_array()).collect();
+        Ok(self.g_buffer.radiance.upload(&texels, Usage::COMPUTE_WRITE)?)
     }
 
     /// Looks from elsewhere: the surfaces are found again by the next [`SceneRenderer::visibility`].

@@ -85,6 +85,7 @@ pub use light_textures::{LightTextureSource, MAX_LIGHT_TEXELS, MAX_LIGHT_TEXTURE
 pub use load::LoadOptions;
 pub use messages::Warning;
 pub use scene::{
-    Image, MAX_TRIANGLES, Scene, SceneLamp, SceneLightTexture, SceneMaterial, Texture, Triangle, Wrap,
+    Image, MAX_TRIANGLES, Scene, SceneFog, SceneLamp, SceneLightTexture, SceneMaterial, Texture, Triangle,
+    Wrap,
 };
 pub use shown::MAX_REPEATS;

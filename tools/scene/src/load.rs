@@ -109,6 +109,7 @@ fn read(mut document: Document, name: String, options: LoadOptions) -> Result<Sc
     if lights.is_empty() {
         messages.warn("scene", NO_LIGHTS);
     }
+    let fog = nodes::fog(&document.root, messages);
     let Messages { warnings, notes } = std::mem::take(messages);
     Ok(Scene {
         name: nodes::scene_name(&document.root).unwrap_or(name),
@@ -120,6 +121,7 @@ fn read(mut document: Document, name: String, options: LoadOptions) -> Result<Sc
         lamps,
         light_textures,
         cameras,
+        fog,
         bounds,
         warnings,
         notes,

@@ -6,6 +6,7 @@ use crate::document::Document;
 use crate::error::SceneError;
 use crate::extensions::{AREA_LIGHTS, PUNCTUAL_LIGHTS};
 use crate::messages::Messages;
+use crate::scene::SceneFog;
 use crate::transforms;
 use glam::{DAffine3, DVec3};
 use gltf::json;
@@ -74,7 +75,7 @@ pub(crate) fn place(document: &Document, messages: &mut Messages) -> Result<Vec<
             camera: node.camera.map(|c| c.value()),
             area_light: extension(AREA_LIGHTS),
             punctual_light: extension(PUNCTUAL_LIGHTS),
-            shape: said_shape(&node.extras),
+            shape: said(&node.extras),
         };
         match transforms::of_instances(document, index, node, placed.len())? {
             None => placed.push(once),
@@ -150,8 +151,27 @@ pub(crate) fn scene_name(root: &json::Root) -> Option<String> {
     scene.name.clone().filter(|name| !name.is_empty())
 }
 
-/// The word in a node's `extras`, if there is one.
-fn said_shape(extras: &json::Extras) -> Option<Value> {
+/// The fog of a scene whose `extras.arealight.fog` has a `density`, and may have an `anisotropy` of 0 and an
+/// `albedo` of 1.
+pub(crate) fn fog(root: &json::Root, messages: &mut Messages) -> Option<SceneFog> {
+    let scene = root.scenes.get(root.scene.map_or(0, |scene| scene.value()))?;
+    let said = said(&scene.extras)?.get("fog")?.clone();
+    let number = |name: &str, default| said.get(name).map_or(Some(default), Value::as_f64);
+    let fog = number("density", 0.0).zip(number("anisotropy", 0.0)).zip(number("albedo", 1.0));
+    let fog = fog.map(|((density, anisotropy), albedo)| SceneFog { density, anisotropy, albedo });
+    let found = fog.filter(|fog| {
+        let is_medium = fog.density > 0.0 && fog.density <= 1e6 && fog.anisotropy.abs() < 1.0;
+        is_medium && (0.0..=1.0).contains(&fog.albedo)
+    });
+    if found.is_none() {
+        let problem = "a density above 0, an anisotropy between -1 and 1, an albedo from 0 to 1";
+        messages.warn("the scene's extras.arealight.fog", format!("must have {problem}: left out"));
+    }
+    found
+}
+
+/// What of a node's or a scene's `extras` is ours, if there is any.
+fn said(extras: &json::Extras) -> Option<Value> {
     let extras: Value = serde_json::from_str(extras.as_ref()?.get()).ok()?;
     extras.get("arealight").cloned()
 }

@@ -37,12 +37,25 @@ pub struct Scene {
     pub light_textures: Vec<SceneLightTexture>,
     /// The file's cameras, in the order of its nodes.
     pub cameras: Vec<Camera>,
+    /// What all of it is in.
+    pub fog: Option<SceneFog>,
     /// Holds every triangle, or every light if there is no triangle.
     pub bounds: Bounds,
     /// What the file has that is not shown as it says, and what was done instead.
     pub warnings: Vec<Warning>,
     /// What is shown as the file means, though not word for word: nothing is lost.
     pub notes: Vec<Warning>,
+}
+
+/// An even medium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SceneFog {
+    /// Extinction per metre, above 0.
+    pub density: f64,
+    /// Henyey and Greenstein's g, in (-1, 1): above 0 light goes on forwards.
+    pub anisotropy: f64,
+    /// What is scattered of what is taken away, in [0, 1].
+    pub albedo: f64,
 }
 
 /// What emits: lights, and the triangles that look like them.

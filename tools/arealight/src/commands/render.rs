@@ -12,7 +12,7 @@ use crate::quality::QualityArguments;
 use crate::shadows::Shadows;
 use arealight::Effects;
 use arealight_engine::Fog;
-use arealight_scene::{Camera, Scene};
+use arealight_scene::{Camera, Scene, SceneFog};
 use glam::Vec3;
 use serde_json::json;
 use shading::{Outcome, render};
@@ -71,7 +71,7 @@ pub struct Arguments {
     /// Go on with rounds of shadow rays until their noise, in levels of 255 as the screen shows the means of
     /// 4 x 4 pixels, is below LEVELS; at most 64 rounds [default: one round]
     #[arg(long, value_name = "LEVELS", value_parser = parse_levels,
-        conflicts_with_all = ["tiles", "reference", "fog"])]
+        conflicts_with_all = ["tiles", "reference"])]
     shadow_noise: Option<f64>,
     /// Other random numbers, for the frames of a film
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -88,7 +88,8 @@ pub struct Arguments {
 /// A medium before the picture.
 #[derive(clap::Args)]
 struct FogArguments {
-    /// Fog: extinction per unit of length. Its froxels are 8 pixels wide and high, in 64 slices
+    /// Fog in the place of the scene's: extinction per unit of length, 0 for none. Its froxels are 8 pixels
+    /// wide and high, in 64 slices
     #[arg(long, value_name = "DENSITY", value_parser = parse_density)]
     fog: Option<f32>,
     /// Of fog, the mean cosine of the angle by which it turns light: above 0 forwards
@@ -99,19 +100,20 @@ struct FogArguments {
     #[arg(long, value_name = "PART", default_value_t = 1.0, requires = "fog", value_parser = parse_albedo)]
     fog_albedo: f32,
     /// Of each of the fog's froxels: samples, each with a shadow ray for each light
-    #[arg(long, value_name = "N", default_value_t = 4, requires = "fog",
+    #[arg(long, value_name = "N", default_value_t = 4,
         value_parser = clap::value_parser!(u32).range(1..=1024))]
     fog_samples: u32,
 }
 
 impl FogArguments {
-    /// The fog in a scene of this size: it ends beyond the scene.
+    /// The fog that is asked for, else the scene's: it ends beyond the scene.
     fn of(&self, scene: &Scene, camera: &Camera) -> Option<Fog> {
-        let density = self.fog?;
+        let asked = self.fog.map(|density| (density, self.anisotropy, self.fog_albedo));
+        let of_scene = |fog: SceneFog| (fog.density as f32, fog.anisotropy as f32, fog.albedo as f32);
+        let (density, anisotropy, albedo) = asked.or(scene.fog.map(of_scene)).filter(|fog| fog.0 > 0.0)?;
         let corners = scene.triangles.iter().flat_map(|triangle| triangle.positions);
         let farthest = corners.map(|corner| corner.distance(camera.position)).fold(1e-3, f64::max) as f32;
-        let albedo = Vec3::splat(self.fog_albedo);
-        Some(Fog { density, albedo, anisotropy: self.anisotropy, farthest })
+        Some(Fog { density, albedo: Vec3::splat(albedo), anisotropy, farthest })
     }
 }
 

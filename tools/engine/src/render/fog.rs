@@ -101,43 +101,29 @@ impl SceneRenderer<'_> {
         fog: &Fog,
         samples: u32,
         (shadows, seed): (bool, u32),
-        mut progress: impl FnMut(u32),
+        progress: impl FnMut(u32),
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let light_sampling = self.engine.storage("light sampling", &self.sampling.lights)?;
-        let light_triangles = self.engine.storage("light triangles", &self.sampling.triangles)?;
-        let resources = self.bound_to(
-            &REFERENCE_MEDIUM,
-            &[("light_sampling", &light_sampling), ("light_triangles", &light_triangles)],
-        );
-        let pass = self.engine.pass(&REFERENCE_MEDIUM, &[(SHADOWS, shadows.into())], &resources)?;
-        let mut total = Some(Duration::ZERO);
-        let mut done = 0;
-        while done < samples {
-            let sample_count = self.samples_a_dispatch(shadows).min(samples - done);
-            let constants = MediumReferenceConstants {
+        let specialization = [(SHADOWS, shadows.into())];
+        self.sampled(
+            (&REFERENCE_MEDIUM, &specialization),
+            (samples, shadows),
+            progress,
+            |first_sample, sample_count| MediumReferenceConstants {
                 position_from_clip: self.camera.position_from_clip().to_cols_array_2d(),
                 camera: self.camera.position().to_array(),
                 light_count: self.lights.light_count,
                 scattering: (fog.albedo * fog.density).to_array(),
                 extinction: fog.density,
                 shape_count: self.lights.shape_count,
-                first_sample: done,
+                first_sample,
                 sample_count,
                 weight: (f64::from(sample_count) / f64::from(samples)) as f32,
                 anisotropy: fog.anisotropy,
                 farthest: fog.farthest,
                 seed,
                 reserved: 0,
-            };
-            let took = self.engine.host().try_submit_timed(|commands: vk::CommandBuffer| {
-                self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
-                pass.record(commands, &constants, self.items())
-            })?;
-            total = total.zip(took).map(|(total, took)| total + took);
-            done += sample_count;
-            progress(done);
-        }
-        Ok(total)
+            },
+        )
     }
 }

@@ -125,3 +125,32 @@ fn what_has_no_size_or_no_sense_is_left_out_and_said() {
     let error = read(writer, None).unwrap_err().to_string();
     assert!(error.contains("light 7 of 1"), "{error}");
 }
+
+#[test]
+fn a_scene_s_fog_is_that_of_its_extras() {
+    let fog = |said: Value| {
+        let mut writer = file(&json!({ "type": "point" }), json!({}));
+        writer.root["scenes"][0]["extras"] = json!({ "arealight": said });
+        let scene = read(writer, Some(RADIUS)).unwrap();
+        let is_warned =
+            warnings(&scene).iter().any(|warning| warning.contains("extras.arealight.fog: must have"));
+        (scene.fog.map(|fog| [fog.density, fog.anisotropy, fog.albedo]), is_warned)
+    };
+    assert_eq!(fog(json!({ "fog": { "density": 0.5 } })), (Some([0.5, 0.0, 1.0]), false));
+    let said = json!({ "fog": { "density": 2, "anisotropy": -0.5, "albedo": 0.9 } });
+    assert_eq!(fog(said), (Some([2.0, -0.5, 0.9]), false));
+    for none in [json!({}), json!("mist"), json!(null)] {
+        assert_eq!(fog(none), (None, false));
+    }
+    for wrong in [
+        json!({}),
+        json!({ "density": 0 }),
+        json!({ "density": "much" }),
+        json!({ "density": 1e300 }),
+        json!({ "density": 1, "anisotropy": 1 }),
+        json!({ "density": 1, "albedo": -0.1 }),
+        json!({ "density": 1, "albedo": [1, 1, 1] }),
+    ] {
+        assert_eq!(fog(json!({ "fog": wrong })), (None, true), "{wrong}");
+    }
+}

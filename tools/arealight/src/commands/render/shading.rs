@@ -129,10 +129,6 @@ pub fn render(
         };
         let view = View { surfaces, quality, seed, light_count: scene.lights.len(), shadowed };
         let (mut shading, tiles) = shade(&mut renderer, &view, arguments, &bar)?;
-        if let Some(fog) = &fog {
-            let took = add_fog(&mut renderer, &buffers, (fog, in_band, seed), arguments)?;
-            sum.fog = took.map(|took| sum.fog.unwrap_or_default() + took);
-        }
         let mut found = colors(&mut renderer)?;
         if let Some(rounds) = Rounds::of(arguments, in_band[0]) {
             let (means, noise, took) = rounds.go_on(&mut renderer, &view, (&lamps, &found), &bar)?;
@@ -142,6 +138,12 @@ pub fn render(
             sum.noise = sum.noise.into_iter().chain(noise).reduce(f64::max);
         } else if arguments.reference.is_none() && arguments.shadow_level() != Shadows::Off {
             sum.rounds = 1;
+        }
+        if let Some(fog) = &fog {
+            renderer.show(&found)?;
+            let took = add_fog(&mut renderer, &buffers, (fog, in_band, seed), arguments)?;
+            sum.fog = took.map(|took| sum.fog.unwrap_or_default() + took);
+            found = colors(&mut renderer)?;
         }
         if matches!(arguments.exposure, Exposure::Auto) {
             emission.extend(band.keep(size[0], lamps));
