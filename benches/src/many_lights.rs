@@ -260,36 +260,6 @@ impl ManyLights {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn found() -> ManyLights {
-        let row = |lamps: usize, way: Way| Row {
-            lamps,
-            way: way.name(),
-            lights_per_pixel: 2.5,
-            milliseconds: lamps as f64,
-            bytes: if way == Way::All { 0 } else { 12_345 },
-            rmse: if way == Way::All { 0.0 } else { 0.012 },
-            largest: 0.03,
-        };
-        let rows = [10, 100].into_iter().flat_map(|lamps| WAYS.map(|way| row(lamps, way))).collect();
-        ManyLights { device: "a device (driver)".to_owned(), size: [64, 36], rows }
-    }
-
-    #[test]
-    fn tables_have_every_way() {
-        let found = found();
-        let text = found.to_markdown("command");
-        for way in WAYS {
-            assert!(text.contains(&format!("| {} |", way.name())), "{text}");
-        }
-        assert!(text.contains("| 100 | all | 2.50 | 100 |"), "{text}");
-        assert!(text.contains("| 12 | 1.20 % | 3.00 % |"), "{text}");
-    }
-}
-
 /// Root mean square over mean, and the largest of a pixel over the pixel.
 fn difference(truth: &[Vec4], found: &[Vec4]) -> [f64; 2] {
     let sum = |pixel: &Vec4| f64::from(pixel.x) + f64::from(pixel.y) + f64::from(pixel.z);
@@ -344,4 +314,34 @@ fn lamps(count: usize, side: f64) -> Vec<Light> {
         }
     };
     (0..count).map(lamp).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found() -> ManyLights {
+        let row = |lamps: usize, way: Way| Row {
+            lamps,
+            way: way.name(),
+            lights_per_pixel: 2.5,
+            milliseconds: lamps as f64,
+            bytes: if way == Way::All { 0 } else { 12_345 },
+            rmse: if way == Way::All { 0.0 } else { 0.012 },
+            largest: 0.03,
+        };
+        let rows = [10, 100].into_iter().flat_map(|lamps| WAYS.map(|way| row(lamps, way))).collect();
+        ManyLights { device: "a device (driver)".to_owned(), size: [64, 36], rows }
+    }
+
+    #[test]
+    fn tables_have_every_way() {
+        let found = found();
+        let text = found.to_markdown("command");
+        for way in WAYS {
+            assert!(text.contains(&format!("| {} |", way.name())), "{text}");
+        }
+        assert!(text.contains("| 100 | all | 2.50 | 100 |"), "{text}");
+        assert!(text.contains("| 12 | 1.20 % | 3.00 % |"), "{text}");
+    }
 }

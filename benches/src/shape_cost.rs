@@ -140,10 +140,7 @@ fn list(passes: &Passes, method: &ShapeMethod, repeats: u32) -> Result<List, Eng
 }
 
 /// Runs a list of each method in turn, `rounds` times after a round that warms up: the seconds of each.
-fn in_turn<R: Pod, C: Pod>(
-    lists: &[ListPass<R, C>],
-    rounds: usize,
-) -> Result<Vec<Vec<f64>>, EngineError> {
+fn in_turn<R: Pod, C: Pod>(lists: &[ListPass<R, C>], rounds: usize) -> Result<Vec<Vec<f64>>, EngineError> {
     let mut seconds = vec![vec![]; lists.len()];
     for round in 0..=rounds {
         for (list, seconds) in lists.iter().zip(&mut seconds) {

@@ -3,8 +3,8 @@
 //! Of a GPU, time is what its timestamps say. Of a software device it is the processor's time, of all its
 //! threads: on a shared machine the clock tells who else is there, and more so in the longer run.
 
-use crate::ladder::timing::quantile;
 use crate::ladder::Spread;
+use crate::ladder::timing::quantile;
 use crate::table::Table;
 use arealight::kernels::Kernel;
 use arealight::{PyramidSize, TexturePart};

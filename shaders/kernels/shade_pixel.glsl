@@ -88,27 +88,6 @@ PixelRadiance shade_surface(ivec2 pixel, ArealightSurface surface, LightList lis
     return sum;
 }
 
-bool is_nearly(vec3 a, vec3 b) {
-    return arealight_max_component(a - b) <= 1e-5 * (1.0 + arealight_max_component(a));
-}
-
-// Whether two surfaces are the same but for rounding: of two samples the same numbers may be decoded by code
-// that a compiler rounds in two ways.
-bool is_same_material(ArealightSurface a, ArealightSurface b) {
-    return is_nearly(a.normal, b.normal) && is_nearly(a.diffuse_albedo, b.diffuse_albedo)
-        && is_nearly(a.f0, b.f0)
-        && is_nearly(vec3(a.f90, a.interface_f0, a.interface_f90),
-                     vec3(b.f90, b.interface_f0, b.interface_f90))
-        && is_nearly(vec3(a.roughness, a.diffuse_roughness, a.anisotropy.roughness),
-                     vec3(b.roughness, b.diffuse_roughness, b.anisotropy.roughness))
-        && is_nearly(a.anisotropy.tangent, b.anisotropy.tangent) && is_nearly(a.coat.normal, b.coat.normal)
-        && is_nearly(vec3(a.coat.weight, a.coat.roughness, a.sheen.roughness),
-                     vec3(b.coat.weight, b.coat.roughness, b.sheen.roughness))
-        && is_nearly(a.sheen.color, b.sheen.color)
-        && is_nearly(vec3(a.film.weight, a.film.ior, a.film.thickness),
-                     vec3(b.film.weight, b.film.ior, b.film.thickness));
-}
-
 // Clears from the bits `samples` of a texel those that show the same surface, and returns how many: equal
 // numbers, and a position no farther from its plane than half the samples' distance across the view, as a
 // fragment with a bent normal writes them.
@@ -126,7 +105,7 @@ int take_samples_of(ivec2 texel, ivec2 pixel, ArealightSurface surface, inout ui
         vec3 across = cross(offset, surface.view);
         bool is_near = 4.0 * height * height * dot(surface.view, surface.view)
                     <= dot(across, across) * dot(surface.normal, surface.normal);
-        if (is_near && is_same_material(load_seen_surface(texel, surface.position), surface)) {
+        if (is_near && load_seen_surface(texel, surface.position) == surface) {
             samples &= ~(1u << index);
             count++;
         }

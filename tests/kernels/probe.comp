@@ -15,9 +15,11 @@ const int FUNCTION_TABLE = 2;
 const int FUNCTION_GGX = 3;
 const int FUNCTION_ARC = 4;
 const int FUNCTION_RAY_ORIGIN = 5;
+const int FUNCTION_RAY_POINT = 6;
 
 #include "arealight/form_factor/arc.glsl"
 #include "arealight/ggx.glsl"
+#include "arealight/ray_points.glsl"
 #include "arealight/shadows/ray_origin.glsl"
 #include "table_image.glsl"
 
@@ -100,6 +102,14 @@ void main() {
         result = ggx_of(given.a.xyz, given.b.xyz, vec2(given.a.w), given.c.xy);
     } else if (FUNCTION == FUNCTION_ARC) {
         result = arc_of(given.a.xyz, given.b.xyz);
+    } else if (FUNCTION == FUNCTION_RAY_POINT) {
+        vec4 distances, weights;
+        for (int i = 0; i < AREALIGHT_RAY_POINTS; i++) {
+            ArealightRayPoint at = arealight_ray_point(given.a.xyz, given.a.w, given.b.xyz, given.b.w, i);
+            distances[i] = at.distance;
+            weights[i] = at.weight;
+        }
+        result = ProbeResults(distances, weights, vec4(0.0), vec4(0.0));
     } else {
         vec3 origin = arealight_ray_origin(given.a.xyz, given.b.xyz, given.b.w);
         result = ProbeResults(vec4(origin, 0.0), vec4(0.0), vec4(0.0), vec4(0.0));

@@ -56,6 +56,9 @@ pub enum Function {
     Arc = 4,
     /// `arealight_ray_origin` of a position a, a normal b and a step b.w.
     RayOrigin = 5,
+    /// `arealight_ray_point` of a center a, a radius a.w, a direction b and an end b.w: the four places'
+    /// distances, and their weights.
+    RayPoint = 6,
 }
 
 impl TestEngine {

@@ -1,8 +1,8 @@
 //! What a lookup costs: the time of the eval kernel over the same points, as ratios within the same run.
 
 use super::{EFFECTS, METHODS, untextured};
-use crate::ladder::timing::quantile;
 use crate::ladder::Spread;
+use crate::ladder::timing::quantile;
 use crate::textures::{is_software, timed};
 use arealight::kernels::Kernel;
 use arealight::{Effects, PackedLights, Quality};

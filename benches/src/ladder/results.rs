@@ -2,6 +2,7 @@
 
 use super::{BASELINE, DEFAULT, Ladder, Row, number};
 use crate::table::Table;
+use std::fmt::Write as _;
 
 /// Megapixels of 1920 x 1080.
 const FRAME: f64 = 2.0736;
@@ -42,7 +43,7 @@ pub fn results(runs: &[(String, Ladder)]) -> String {
     let summary = Table::new(&heads, runs.iter().map(summary)).to_markdown();
     let mut text = format!("{HEAD}\n{summary}{LEGEND}");
     for (_, run) in runs {
-        text += &format!("\n## {}\n\n{}", run.device, run.to_markdown());
+        let _ = write!(text, "\n## {}\n\n{}", run.device, run.to_markdown());
     }
     text
 }

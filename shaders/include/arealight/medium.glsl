@@ -3,6 +3,7 @@
 
 #include "arealight/lobes/phase.glsl"
 #include "arealight/material.glsl"
+#include "arealight/ray_points.glsl"
 
 // A point in a medium (AREALIGHT_MEDIA): a surface without a horizon, whose lobes are its phase function.
 //

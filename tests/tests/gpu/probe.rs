@@ -93,8 +93,8 @@ fn frames_are_orthonormal_whatever_comes_in() {
         if is_vector(normal) && is_vector(to_viewer) {
             let exact = SurfaceFrame::new(normal, to_viewer);
             let direction = exact.view();
-            // Three roundings of products of unit vectors, and the vectors' own; within 1e-6 of the normal any
-            // tangent
+            // Three roundings of products of unit vectors, and the vectors' own; within 1e-6 of the normal
+            // any tangent
             let rounding = if direction.x < 1.5e-6 { 1.5e-6 } else { 4e-7 };
             let bound = rounding + flushed(normal) + flushed(to_viewer);
             view.add(found[0][3].into(), exact.cos_view().clamp(0.0, 1.0), bound, place);

@@ -164,8 +164,10 @@ pub(crate) fn fog(root: &json::Root, messages: &mut Messages) -> Option<SceneFog
         is_medium && (0.0..=1.0).contains(&fog.albedo)
     });
     if found.is_none() {
-        let problem = "a density above 0, an anisotropy between -1 and 1, an albedo from 0 to 1";
-        messages.warn("the scene's extras.arealight.fog", format!("must have {problem}: left out"));
+        messages.warn(
+            "the scene's extras.arealight.fog",
+            "must have a density above 0, an anisotropy between -1 and 1, an albedo from 0 to 1: left out",
+        );
     }
     found
 }

@@ -132,8 +132,9 @@ fn a_scene_s_fog_is_that_of_its_extras() {
         let mut writer = file(&json!({ "type": "point" }), json!({}));
         writer.root["scenes"][0]["extras"] = json!({ "arealight": said });
         let scene = read(writer, Some(RADIUS)).unwrap();
-        let is_warned =
-            warnings(&scene).iter().any(|warning| warning.contains("extras.arealight.fog: must have"));
+        let is_warned = warnings(&scene)
+            .iter()
+            .any(|warning| warning.contains("extras.arealight.fog: must have a density above 0"));
         (scene.fog.map(|fog| [fog.density, fog.anisotropy, fog.albedo]), is_warned)
     };
     assert_eq!(fog(json!({ "fog": { "density": 0.5 } })), (Some([0.5, 0.0, 1.0]), false));

@@ -58,8 +58,8 @@ pub struct Arguments {
     /// (lavapipe will do), times what each path costs by these statistics. Beside the clipless method.
     #[arg(long, conflicts_with_all = ["only", "check", "update", "json", "save"])]
     model: bool,
-    /// Compile by this device's own driver, which must have VK_KHR_pipeline_executable_properties, and print
-    /// what it says of each row in its own words: a part of the device's name, or its number.
+    /// Compile by this device's own driver, which must have `VK_KHR_pipeline_executable_properties`, and
+    /// print what it says of each row in its own words: a part of the device's name, or its number.
     #[arg(long, value_name = "NAME|NUMBER",
         conflicts_with_all = ["family", "check", "update", "model", "on_null_hardware"])]
     device: Option<String>,
