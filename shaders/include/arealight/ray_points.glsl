@@ -36,8 +36,10 @@ float arealight_half_of_tangent(float x) {
 ArealightRayPoint arealight_ray_point(vec3 center, float radius, vec3 direction, float end, int index) {
     float middle = dot(center, direction);
     vec3 aside = center - middle * direction;
-    // A light is as good as half of its radius away from a ray through it
-    float across = sqrt(dot(aside, aside) + 0.25 * radius * radius + AREALIGHT_TINY);
+    // A light is as good as half of its radius away from a ray through it, and 1e-4 of how far it is away,
+    // below which float32 tells no places apart
+    float across = sqrt(dot(aside, aside) + 0.25 * radius * radius
+                        + 1e-8 * (middle * middle + end * end) + AREALIGHT_TINY);
     float first = arealight_half_of_tangent(-middle / across);
     float last = arealight_half_of_tangent((end - middle) / across);
     bool is_outer = index == 0 || index == 3;

@@ -143,9 +143,11 @@ fn thin_and_far_tubes_keep_relative_precision() {
                 let thickness = tube.radius / distance(&tube);
                 // A line's own error is the thickness's square. What is no line is summed edge by edge: near
                 // by its error is absolute, of which the vertices' rounding leaves some 2^-27. Heights in the
-                // lobe's space are rounded to 2^-23 of the distance, of which they are a hundredth
+                // lobe's space are rounded to 2^-23 of the distance, of which they are a hundredth or less
                 let summed = if is_thin(&tube, &lobe) { 0.0 } else { 1.5e-8 / whole };
-                let bound = summed + 1e-4 + 10.0 * thickness * thickness;
+                let center = lobe * (0.5 * (tube.start + tube.end));
+                let low = (0.01 * center.length() / center.z.abs()).clamp(1.0, 2.0);
+                let bound = summed + 1e-4 * low + 10.0 * thickness * thickness;
                 if whole > 0.0 {
                     comparison.add(found / whole, truth / whole, bound, || {
                         format!("{tube:?}, {lobe:?}, {whole:e}")
