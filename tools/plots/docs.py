@@ -3,6 +3,7 @@
 import importlib.machinery
 import importlib.util
 import json
+import os
 import pathlib
 import sys
 
@@ -238,7 +239,7 @@ DRAWINGS = (cosine_to_lobe, polygon_to_cosine_space, clip, edge_integral, table_
 
 def module():
     """The Python module, as it was built."""
-    path = str(ROOT / "target/debug/libarealight_python.so")
+    path = str(ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "debug/libarealight_python.so")
     loader = importlib.machinery.ExtensionFileLoader("arealight", path)
     built = importlib.util.module_from_spec(importlib.util.spec_from_loader("arealight", loader))
     loader.exec_module(built)
