@@ -1,8 +1,8 @@
 //! What the form factor of a disk, a sphere or a tube costs on a device that crosses the horizon, and of the
 //! ways to a disk how far off they are: by the library's levels and by yardsticks.
 //!
-//! Every method runs in turn, round after round, and is read as a ratio to one of them
-//! in the same round: here to a disk, exactly.
+//! Every method runs in turn, round after round, and is read as a ratio to one of them in the same round: to
+//! a disk, exactly.
 
 use crate::ladder::Spread;
 use crate::shapes::{SHAPES, ShapeArguments, ShapeFunction, ellipse_arguments, tube_arguments};

@@ -46,7 +46,7 @@ impl OwnWords {
         format!("{}, {}.\n\n{}", self.device, self.driver, self.table().to_markdown())
     }
 
-    /// A row each, and a column for each number of which there are several values.
+    /// One row per shader, one column per statistic that differs between shaders.
     fn table(&self) -> Table {
         let of =
             |row: &[(String, u64)], name: &str| row.iter().find(|(said, _)| said == name).map(|one| one.1);

@@ -55,8 +55,15 @@ fn difference(a: &[[u32; 4]], b: &[[u32; 4]]) -> (usize, f32) {
     let channels = || a.as_flattened().iter().zip(b.as_flattened());
     let numbers = || channels().map(|(a, b)| (f32::from_bits(*a), f32::from_bits(*b)));
     let brightest = numbers().fold(0.0, |most: f32, (a, _)| most.max(a));
-    let largest = numbers().fold(0.0, |most: f32, (a, b)| most.max((a - b).abs()));
+    // NaN is the largest
+    let larger = |most: f32, one: f32| if one <= most || most.is_nan() { most } else { one };
+    let largest = numbers().map(|(a, b)| (a - b).abs()).fold(0.0, larger);
     (a.iter().zip(b).filter(|(a, b)| a != b).count(), largest / brightest)
+}
+
+/// Whether a [`difference`] is none: in no bit, or on devices that round in several ways no more than that.
+fn is_none(engine: &TestEngine, (pixels, largest): (usize, f32)) -> bool {
+    pixels == 0 || engine.rounding() > 0.0 && largest <= engine.rounding()
 }
 
 #[test]
@@ -69,7 +76,7 @@ fn an_effect_that_no_surface_needs_changes_no_bit() {
     let expected = view.shade(required, plain);
     let (pixels, largest) =
         difference(&expected, &view.shade(Effects::SURFACES - (Effects::MODEL - required), plain));
-    assert!(largest <= engine.rounding(), "{pixels} pixels, {largest:e} at most");
+    assert!(is_none(&engine, (pixels, largest)), "{pixels} pixels, {largest:e} at most");
     // The twin: one that pixels use changes most of them
     let (pixels, _) = difference(
         &view.shade(required, Quality::default()),
@@ -102,7 +109,7 @@ fn code_that_no_light_needs_changes_no_bit() {
     let wrong = sets.into_iter().filter_map(|(added, quality)| {
         let (pixels, largest) =
             difference(&view.shade(required, quality), &view.shade_by_all_of(required | added, quality));
-        (largest > engine.rounding())
+        (!is_none(&engine, (pixels, largest)))
             .then(|| format!("{quality:?}, {added}: {pixels} pixels, {largest:e} at most"))
     });
     let wrong: Vec<String> = wrong.collect();
@@ -120,5 +127,5 @@ fn code_of_every_polygon_effect_shows_what_the_required_one_does() {
     assert!(required != all && required.contains(Effects::POLYGON | Effects::TWO_SIDED), "{required}");
     let quality = Quality::default();
     let (pixels, largest) = difference(&view.shade(required, quality), &view.shade_by_all_of(all, quality));
-    assert!(largest <= engine.rounding(), "{pixels} pixels, {largest:e} at most");
+    assert!(is_none(&engine, (pixels, largest)), "{pixels} pixels, {largest:e} at most");
 }

@@ -135,12 +135,14 @@ pub fn render(
             shading = shading.zip(took).map(|(one, more)| one + more);
             found = lamps.iter().zip(means.mean()).map(|(lamp, mean)| *lamp + mean.as_vec3()).collect();
             sum.rounds = sum.rounds.max(means.samples());
+            if fog.is_some() {
+                renderer.show(&found)?;
+            }
             sum.noise = sum.noise.into_iter().chain(noise).reduce(f64::max);
         } else if arguments.reference.is_none() && arguments.shadow_level() != Shadows::Off {
             sum.rounds = 1;
         }
         if let Some(fog) = &fog {
-            renderer.show(&found)?;
             let took = add_fog(&mut renderer, &buffers, (fog, in_band, seed), arguments)?;
             sum.fog = took.map(|took| sum.fog.unwrap_or_default() + took);
             found = colors(&mut renderer)?;
