@@ -1,6 +1,8 @@
 //! Any text as a file of shading points: what is supported is answered by a number that is not negative.
 #![no_main]
 
+mod memory;
+
 use arealight_cases::cases::read_cases;
 use arealight_oracle::shading::ltc;
 use libfuzzer_sys::fuzz_target;
@@ -9,7 +11,7 @@ use std::sync::LazyLock;
 static TABLE: LazyLock<arealight::LightTable> = LazyLock::new(arealight::LightTable::ggx);
 
 fuzz_target!(|text: &str| {
-    let Ok(cases) = read_cases(text) else { return };
+    let Ok(cases) = memory::follows(text.len(), || read_cases(text)) else { return };
     for case in &cases {
         let no_image = |_: &str| Err("there are no files".to_owned());
         if let Ok(case) = case.supported(no_image) {

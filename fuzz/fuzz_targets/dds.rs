@@ -1,11 +1,13 @@
 //! Any bytes as a DDS table.
 #![no_main]
 
+mod memory;
+
 use arealight_table::{Precision, TableFile, Target};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
-    if let Ok(file) = TableFile::read(bytes) {
+    if let Ok(file) = memory::follows(bytes.len(), || TableFile::read(bytes)) {
         let again = file.write(Target::Dds(Precision::Single)).expect("what was read can be written");
         assert_eq!(TableFile::read(&again).expect("and read again"), file);
     }

@@ -1,12 +1,15 @@
 //! Any bytes as a glTF file: a scene whose lights are valid and whose buffers can be traced, or an error.
 #![no_main]
 
+mod memory;
+
 use arealight_scene::{Scene, SceneBuffers};
 use glam::DVec3;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
-    let Ok(scene) = Scene::from_bytes(bytes, "any") else { return };
+    let read = || Scene::from_bytes(bytes, "any");
+    let Ok(scene) = memory::follows(bytes.len(), read) else { return };
     for light in &scene.lights {
         light.validate().expect("a scene's lights are valid");
     }

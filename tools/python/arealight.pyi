@@ -6,9 +6,13 @@ names it.
 """
 
 from os import PathLike
-from typing import Callable, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Callable, Optional, Sequence, Tuple, Union
+
+if TYPE_CHECKING:
+    import numpy
 
 Triple = Tuple[float, float, float]
+Triples = Union[Triple, Sequence[Triple], "numpy.ndarray"]
 Path = Union[str, "PathLike[str]"]
 
 __version__: str
@@ -77,22 +81,31 @@ class Table:
 def radiance(
     light: Light,
     material: Material,
-    view: Triple,
-    position: Triple = (0, 0, 0),
-    normal: Triple = (0, 0, 1),
+    view: Triples,
+    position: Triples = (0, 0, 0),
+    normal: Triples = (0, 0, 1),
     table: Optional[Table] = None,
-) -> Triple:
-    """What a surface reflects of a light to a viewer in the direction `view`, by a fitted table in float64: what the shaders compute."""
+) -> Triples:
+    """What a surface reflects of a light to a viewer in the direction `view`, by a fitted table in float64: what the shaders compute.
+
+    Each of view, position and normal is three numbers or an array of rows of three, all of one length; with
+    rows the answer is an array of rows, too.
+    """
 
 def truth(
     light: Light,
-    material: Material,
-    view: Triple,
-    position: Triple = (0, 0, 0),
-    normal: Triple = (0, 0, 1),
+    material: Union[Material, Callable[[Triple, Triple], float]],
+    view: Triples,
+    position: Triples = (0, 0, 0),
+    normal: Triples = (0, 0, 1),
     tolerance: float = 1e-6,
-) -> Tuple[Triple, Triple]:
-    """The same by adaptive cubature of the true BRDF, and an estimate of its error, which is much larger than that."""
+) -> Tuple[Triples, Triples]:
+    """The same by adaptive cubature of the true BRDF, and an estimate of its error, which is much larger than that.
+
+    In place of a material, a function of view and light that returns f cos theta_light: unit vectors above
+    the surface, whose normal is along z, with the view in the xz plane. A lobe that is much narrower than
+    the light may be missed. What the function raises is raised.
+    """
 
 def ggx(alpha: float, view: Triple, light: Triple) -> float:
     """f cos of GGX with height-correlated masking and shadowing, a steradian, without a Fresnel term; the normal is along z."""

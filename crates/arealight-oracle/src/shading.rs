@@ -3,6 +3,7 @@
 
 mod anisotropy;
 mod coat;
+mod density;
 mod diffuse;
 pub mod footprint;
 mod half_vectors;
@@ -15,6 +16,7 @@ mod sheen;
 mod shown;
 mod textured;
 
+pub use density::{Directions, density_truth, shape_density_truth};
 pub use medium::{in_scattered, in_scattered_truth, shape_in_scattered, shape_in_scattered_truth};
 pub use shapes::{shape_ltc_on, shape_seen_from, shape_truth, textured_ellipse};
 pub use shown::ShownImage;

@@ -4,6 +4,7 @@ use crate::cases::CaseError;
 use glam::DVec3;
 use serde::Serialize;
 use serde_json::Value;
+use std::fmt::Write as _;
 
 /// What was found for a case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -34,8 +35,11 @@ impl Answer {
 
 /// The text of a file of answers, `{"by": ..., "results": [...]}`, one a line; `by` says what answered.
 pub fn write_answers(answers: &[Answer], by: &Value) -> String {
-    let lines: Vec<String> = answers.iter().map(|answer| serde_json::json!(answer).to_string()).collect();
-    format!("{{\"by\": {by}, \"results\": [\n{}\n]}}\n", lines.join(",\n"))
+    let mut text = format!("{{\"by\": {by}, \"results\": [");
+    for (index, answer) in answers.iter().enumerate() {
+        let _ = write!(text, "{}\n{}", if index == 0 { "" } else { "," }, serde_json::json!(answer));
+    }
+    text + "\n]}\n"
 }
 
 /// Reads a file of answers or of known radiance: `{"results": [...]}`, or the array alone. Fields beside

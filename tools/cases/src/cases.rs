@@ -16,7 +16,7 @@ use arealight_oracle::texture::Texture;
 use arealight_oracle::visibility::Blocker;
 pub use coat::CaseCoat;
 pub(crate) use fields::json;
-use fields::{Fields, member};
+use fields::{Fields, each};
 use glam::{DVec2, DVec3};
 pub use material::CaseMaterial;
 use std::sync::Arc;
@@ -215,10 +215,11 @@ pub struct Unsupported {
 /// # Errors
 /// [`CaseError`] says which case and field is wrong.
 pub fn read_cases(text: &str) -> Result<Vec<Case>, CaseError> {
-    let document = json(text)?;
-    let values = member(&document, "cases", "a file of cases is {\"cases\": [...]}")?;
-    let cases: Vec<Case> =
-        values.iter().enumerate().map(|(index, value)| read_case(index, value)).collect::<Result<_, _>>()?;
+    let mut cases = vec![];
+    each(text, "cases", "a file of cases is {\"cases\": [...]}", |index, value| {
+        cases.push(read_case(index, value)?);
+        Ok(())
+    })?;
     // Answers are found by name, so no two cases may share one
     let mut seen = std::collections::HashSet::new();
     match cases.iter().find(|case| !seen.insert(case.name.as_str())) {

@@ -13,8 +13,8 @@ use std::sync::mpsc::RecvTimeoutError;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// A function of alpha, view and light that returns `f cos theta_light`.
-struct Called {
+/// A function of alpha, view and light, or of the last two, that returns `f cos theta_light`.
+pub struct Called {
     name: String,
     function: Py<PyAny>,
     /// What the function raised first: it is asked no more then.
@@ -26,19 +26,37 @@ impl Called {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    pub fn new(name: &str, function: Py<PyAny>) -> Self {
+        Self { name: name.to_owned(), function, raised: Mutex::default() }
+    }
+
+    /// What the function raised, if it did.
+    pub fn raise(&self) -> PyResult<()> {
+        self.raised().take().map_or(Ok(()), Err)
+    }
+
+    /// The value of a function of view and light.
+    pub fn reflected(&self, view: DVec3, light: DVec3) -> f64 {
+        let (view, light) = (above(view).to_array(), light.to_array());
+        self.value(
+            |py, function| function.call1(py, (view, light)),
+            || format!("view {view:?}, light {light:?}"),
+        )
+    }
+
     /// The function's value, or 0 where it has none.
-    fn call(&self, alpha: f64, view: DVec3, light: DVec3) -> f64 {
+    fn value(
+        &self,
+        call: impl FnOnce(Python<'_>, &Py<PyAny>) -> PyResult<Py<PyAny>>,
+        place: impl FnOnce() -> String,
+    ) -> f64 {
         if self.raised().is_some() {
             return 0.0;
         }
         let called = Python::attach(|py| {
-            let value: f64 =
-                self.function.call1(py, (alpha, view.to_array(), light.to_array()))?.extract(py)?;
+            let value: f64 = call(py, &self.function)?.extract(py)?;
             if !(value >= 0.0 && value.is_finite()) {
-                let message = format!(
-                    "brdf: {value} for alpha {alpha}, view {view}, light {light}: must be finite and not \
-                    negative"
-                );
+                let message = format!("brdf: {value} for {}: must be finite and not negative", place());
                 return Err(PyValueError::new_err(message));
             }
             Ok(value)
@@ -50,6 +68,11 @@ impl Called {
     }
 }
 
+/// The view, or one that BRDFs can divide by the cosine of.
+fn above(view: DVec3) -> DVec3 {
+    if view.z < LEAST_COSINE { view_direction(LEAST_COSINE) } else { view }
+}
+
 impl Brdf for Called {
     fn name(&self) -> &str {
         &self.name
@@ -59,8 +82,9 @@ impl Brdf for Called {
         if light.z <= 0.0 {
             return 0.0;
         }
-        let view = if view.z < LEAST_COSINE { view_direction(LEAST_COSINE) } else { view };
-        self.call(alpha, view, light)
+        let (view, light) = (above(view).to_array(), light.to_array());
+        let place = || format!("alpha {alpha}, view {view:?}, light {light:?}");
+        self.value(|py, function| function.call1(py, (alpha, view, light)), place)
     }
 
     /// Half by GGX of this alpha, half by the cosine.
@@ -98,7 +122,7 @@ pub fn fit(
     name: &str,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Table> {
-    let called = Called { name: name.to_owned(), function: brdf, raised: Mutex::default() };
+    let called = Called::new(name, brdf);
     let settings = Settings { size, pairs: false, ..Settings::default() };
     let tell = |done: u64, steps: u64| {
         let Some(progress) = &progress else { return };
@@ -134,9 +158,7 @@ pub fn fit(
             }
         }
     });
-    if let Some(error) = called.raised().take() {
-        return Err(error);
-    }
+    called.raise()?;
     let fitted = fitted.ok_or_else(|| PyRuntimeError::new_err("the fitter has panicked"))?;
     fitted.map(Table).map_err(|error| PyValueError::new_err(error.to_string()))
 }

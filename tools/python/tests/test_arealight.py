@@ -7,6 +7,7 @@ import unittest
 from pathlib import Path
 
 import arealight
+import numpy
 
 VIEW = (0.6, 0.0, 0.8)
 
@@ -50,6 +51,36 @@ class Radiance(unittest.TestCase):
         there = arealight.radiance(arealight.Light.polygon(moved), material, VIEW, position=(5, -3, 1))
         for a, b in zip(here, there):
             self.assertAlmostEqual(a, b, places=12)
+
+
+    def test_a_function_has_a_truth(self):
+        material = arealight.Material((1, 1, 1), metalness=1.0, roughness=0.6)
+        for light in (arealight.Light.polygon(square(2.0), radiance=(1, 2, 3)), arealight.Light.sphere((0, 1, 1), 0.4)):
+            known, _ = arealight.truth(light, material, VIEW)
+            found, error = arealight.truth(light, lambda view, to: arealight.ggx(0.36, view, to), VIEW)
+            for a, b in zip(known, found):
+                self.assertAlmostEqual(a, b, delta=1e-5 * a)
+            # The twin: another roughness
+            other, _ = arealight.truth(light, lambda view, to: arealight.ggx(0.3, view, to), VIEW)
+            self.assertGreater(abs(other[0] - known[0]), 0.01 * known[0])
+        with self.assertRaisesRegex(ZeroDivisionError, "division"):
+            arealight.truth(light, lambda view, to: 1 / 0, VIEW)
+        with self.assertRaisesRegex(ValueError, "brdf: -1 for view"):
+            arealight.truth(light, lambda view, to: -1.0, VIEW)
+
+    def test_rows_of_points_are_answered_as_each(self):
+        light, material = arealight.Light.polygon(square(2.0)), arealight.Material()
+        places = [(0.1 * i, -0.05 * i, 0.0) for i in range(7)]
+        for rows in (places, numpy.array(places), numpy.zeros((0, 3))):
+            found = arealight.radiance(light, material, VIEW, position=rows)
+            self.assertEqual(found.shape, (len(rows), 3))
+            for place, one in zip(rows, found):
+                self.assertEqual(list(one), list(arealight.radiance(light, material, VIEW, position=place)))
+        values, errors = arealight.truth(light, material, [VIEW, (0, 0, 1)], tolerance=1e-4)
+        self.assertEqual((values.shape, errors.shape), ((2, 3), (2, 3)))
+        self.assertNotEqual(values[0, 0], values[1, 0])
+        with self.assertRaisesRegex(ValueError, "view: 2 rows, where others have 7"):
+            arealight.radiance(light, material, [VIEW, VIEW], position=places)
 
 
 class Tables(unittest.TestCase):

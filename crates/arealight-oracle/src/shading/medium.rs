@@ -1,9 +1,9 @@
 //! Lights in a medium: what a point of it scatters once.
 
-use super::profiled::factor_in;
+use super::density::{Directions, density_truth, shape_density_truth};
 use super::shapes::LocalShape;
 use super::{RelativeLight, Truth};
-use crate::cubature::{Region, Settings, angles};
+use crate::cubature::Settings;
 use crate::frame::SurfaceFrame;
 use crate::phase::{PhaseFit, henyey_greenstein};
 use crate::polygon::{emitted, solid_angle, transformed_form_factor};
@@ -19,29 +19,25 @@ fn medium_frame(view: DVec3) -> SurfaceFrame {
 /// phase function: W/(m² sr) per unit of length, for a scattering coefficient of 1 and a light that nothing
 /// dims. `view`, the direction to the viewer, has any length above zero; `g` is in (-1, 1).
 pub fn in_scattered_truth(g: f64, view: DVec3, light: &RelativeLight, settings: &Settings) -> Truth {
-    over_polygon(view, light, settings, |mu| henyey_greenstein(g, mu))
+    density_truth(&medium_frame(view), light, settings, Directions::All, |to| henyey_greenstein(g, to.z))
 }
 
 /// What [`in_scattered_truth`] has, of a disk, sphere or tube without an image; None for polygons and meshes.
 /// Silhouettes are drawn as in [`super::shape_truth`].
 pub fn shape_in_scattered_truth(g: f64, view: DVec3, light: &Light, settings: &Settings) -> Option<Truth> {
-    let frame = medium_frame(view);
-    let seen = LocalShape::new(light, &frame)?;
-    Some(seen.refined_truth(light.radiance.as_dvec3(), |region| {
-        let estimate = region.integrate(settings, angles, |to| [henyey_greenstein(g, to.z)]);
-        let [value, error] = [estimate.value, estimate.error].map(|x| DVec3::splat(x[0]));
-        Truth { radiance: value, error, evaluations: estimate.evaluations }
-    }))
+    shape_density_truth(&medium_frame(view), light, settings, Directions::All, |to| {
+        henyey_greenstein(g, to.z)
+    })
 }
 
 /// The same as [`in_scattered_truth`] by [`PhaseFit::HG`], exactly integrated: the float64 twin of
 /// `arealight_in_scattered`. `g` counts as in [`PhaseFit::lobes`].
 pub fn in_scattered(g: f64, view: DVec3, light: &RelativeLight) -> DVec3 {
-    let lobes = PhaseFit::HG.lobes(g);
+    let (lobes, frame) = (PhaseFit::HG.lobes(g), medium_frame(view));
     if light.image.is_some() || light.profile.is_some() {
-        return over_polygon(view, light, &Settings::default(), |mu| lobes.density(mu)).radiance;
+        let density = |to: DVec3| lobes.density(to.z);
+        return density_truth(&frame, light, &Settings::default(), Directions::All, density).radiance;
     }
-    let frame = medium_frame(view);
     let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
     let covered = emitted(solid_angle(&vertices), light.two_sided);
     let form_factor = |space: &DMat3| emitted(transformed_form_factor(space, &vertices), light.two_sided);
@@ -53,30 +49,4 @@ pub fn shape_in_scattered(g: f64, view: DVec3, light: &Light) -> Option<DVec3> {
     let seen = LocalShape::new(light, &medium_frame(view))?;
     let sum = PhaseFit::HG.lobes(g).sum(seen.solid_angle(), |space| seen.form_factor(space));
     Some(light.radiance.as_dvec3() * sum)
-}
-
-/// A polygon, with what it shows, times a density of the cosine to where light goes on to.
-fn over_polygon(
-    view: DVec3,
-    light: &RelativeLight,
-    settings: &Settings,
-    density: impl Fn(f64) -> f64,
-) -> Truth {
-    let frame = medium_frame(view);
-    let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
-    let image = light.image.as_ref().map(|image| image.in_frame(&frame));
-    let region = match &image {
-        None => Region::polygon(&vertices),
-        Some(image) => image.region(&vertices, settings.max_evaluations / super::EVALUATIONS_PER_TEXEL),
-    };
-    let estimate = region.integrate(settings, angles, |to| {
-        let shown = image.as_ref().map_or(DVec3::ONE, |image| image.color(to));
-        let factor = light.profile.as_ref().map_or(1.0, |profile| factor_in(profile, &vertices, to));
-        (shown * (factor * density(to.z))).to_array()
-    });
-    Truth {
-        radiance: light.radiance * DVec3::from(estimate.value.map(|x| emitted(x, light.two_sided))),
-        error: light.radiance * DVec3::from(estimate.error),
-        evaluations: estimate.evaluations,
-    }
 }

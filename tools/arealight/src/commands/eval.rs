@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::output::{self, print, say_beside};
 use crate::quality::{self, QualityArguments};
 use crate::{gpu, memory, progress, visible};
-use arealight::LightShape;
+use arealight::{LightShape, LightTable};
 use arealight_cases::answers::{Answer, read_answers, write_answers};
 use arealight_cases::cases::{
     Case, CaseError, CaseMaterial, CaseShape, MediumCase, ShapeCase, SupportedCase, read_cases,
@@ -215,10 +215,29 @@ fn supported(
     case.supported_shape(load).map(Supported::Shape).map_err(|error| error.to_string())
 }
 
+/// Cases that are answered at a time: what is made of them takes some kilobytes each.
+const BATCH: usize = 1 << 12;
+
 /// One answer a case, in their order: the radiance, or why there is none.
 fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Failure> {
-    // Set aside what is not supported
+    let table = arguments.quality.table()?;
+    let mut engine = gpu::LazyEngine::new(arguments.device.device.as_deref(), &table);
     let mut images = Images::beside(&arguments.cases, memory::most_of);
+    let mut answers = Vec::with_capacity(cases.len());
+    for cases in cases.chunks(BATCH) {
+        answers.extend(answer_batch(cases, arguments, &table, &mut engine, &mut images)?);
+    }
+    Ok(answers)
+}
+
+fn answer_batch(
+    cases: &[Case],
+    arguments: &Arguments,
+    table: &LightTable,
+    engine: &mut gpu::LazyEngine<'_>,
+    images: &mut Images,
+) -> Result<Vec<Answer>, Failure> {
+    // Set aside what is not supported
     let sorted: Vec<Result<Supported, String>> =
         cases.iter().map(|case| supported(case, |path| images.load(path))).collect();
     let known = || sorted.iter().flatten();
@@ -232,23 +251,20 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     let quality = arguments.quality.quality();
     let (of_polygons, of_shapes, of_media) = match arguments.on {
         Method::Gpu => {
-            let table = arguments.quality.table()?;
-            let mut engine = gpu::LazyEngine::new(arguments.device.device.as_deref(), &table);
-            let polygons = gpu::eval::answer(&polygons, quality, &mut engine, &arguments.cases)?;
-            let shapes = gpu::eval_alike::answer(&shapes, quality, &mut engine, &arguments.cases)?;
-            (polygons, shapes, gpu::eval_alike::answer(&media, quality, &mut engine, &arguments.cases)?)
+            let polygons = gpu::eval::answer(&polygons, quality, engine, &arguments.cases)?;
+            let shapes = gpu::eval_alike::answer(&shapes, quality, engine, &arguments.cases)?;
+            (polygons, shapes, gpu::eval_alike::answer(&media, quality, engine, &arguments.cases)?)
         }
         Method::Oracle => {
-            let table = arguments.quality.table()?;
             let polygons = answer_in_parallel(&polygons, |case| {
                 let SupportedCase { name, surface, normal, view, light, .. } = case;
-                Answer::new(name, ltc_on(quality, &table, surface, *normal, *view, light))
+                Answer::new(name, ltc_on(quality, table, surface, *normal, *view, light))
             });
             let shapes = answer_in_parallel(&shapes, |case| {
                 let ShapeCase { name, surface, normal, view, light, .. } = case;
                 let radiance = match textured(case) {
-                    Some(light) => Some(ltc_on(quality, &table, surface, *normal, *view, &light)),
-                    None => shape_ltc_on(quality, &table, surface, *normal, *view, light),
+                    Some(light) => Some(ltc_on(quality, table, surface, *normal, *view, &light)),
+                    None => shape_ltc_on(quality, table, surface, *normal, *view, light),
                 };
                 radiance.map_or_else(|| no_shape(name), |radiance| Answer::new(name, radiance))
             });

@@ -83,6 +83,22 @@ fn what_strangers_write_is_refused_in_plain_words_and_little_memory() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("more than is left of 1153433600"));
 }
 
+/// They took 1.1 GB as a tree of JSON and copies of all.
+#[cfg(unix)]
+#[test]
+fn many_cases_take_little_memory() {
+    const COUNT: usize = 200_000;
+    let folder = tempfile::tempdir().unwrap();
+    let one = case(r#""tangent": [1, 0, 0]"#, "");
+    let inner = one.trim_start_matches(r#"{"cases": ["#).strip_suffix("]}").unwrap();
+    let each = (0..COUNT).map(|index| inner.replacen("\"c\"", &format!("\"{index}\""), 1));
+    let text = format!(r#"{{"cases": [{}]}}"#, each.collect::<Vec<_>>().join(","));
+    fs::write(folder.path().join("many.json"), text).unwrap();
+    let output = within_little(folder.path(), &["eval", "many.json", "--on", "oracle", "-o", "out.json"]);
+    let said = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+    assert!(said.contains("200000 cases on oracle") && said.contains(" 0 unanswered"), "{said}");
+}
+
 #[cfg(unix)]
 #[test]
 fn a_pipe_is_written_once_and_an_input_never() {

@@ -1,34 +1,59 @@
 //! Fields of a JSON object, read one by one, so that every error names its case and field.
 
 use super::CaseError;
-use super::strict::Strict;
+use super::strict::{Items, Strict};
 use glam::{DVec2, DVec3};
+use serde::Deserializer as _;
 use serde_json::{Map, Value};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
 /// Parses JSON, in which no key may be there twice.
 pub fn json(text: &str) -> Result<Value, CaseError> {
-    serde_json::from_str(text).map(|Strict(value)| value).map_err(|error| {
-        // The likeliest wrong token is a number that JSON does not have
-        let line = text.lines().nth(error.line().saturating_sub(1)).unwrap_or_default();
-        let start = error.column().saturating_sub(2);
-        let token: String = line.chars().skip(start).take(9).collect::<String>().to_lowercase();
-        let hint = if ["nan", "inf"].iter().any(|word| token.contains(word)) {
-            "; JSON has no NaN and no infinity"
-        } else {
-            ""
-        };
-        CaseError::NotJson { message: format!("{error}{hint}") }
-    })
+    serde_json::from_str(text).map(|Strict(value)| value).map_err(|error| not_json(text, &error))
 }
 
-/// The array under `field` of the outermost object.
-pub fn member<'a>(document: &'a Value, field: &str, expected: &str) -> Result<&'a [Value], CaseError> {
-    document.get(field).and_then(Value::as_array).map(Vec::as_slice).ok_or_else(|| CaseError::File {
-        field: field.into(),
-        message: format!("missing or no array; {expected}"),
-    })
+fn not_json(text: &str, error: &serde_json::Error) -> CaseError {
+    // The likeliest wrong token is a number that JSON does not have
+    let line = text.lines().nth(error.line().saturating_sub(1)).unwrap_or_default();
+    let start = error.column().saturating_sub(2);
+    let token: String = line.chars().skip(start).take(9).collect::<String>().to_lowercase();
+    let hint = if ["nan", "inf"].iter().any(|word| token.contains(word)) {
+        "; JSON has no NaN and no infinity"
+    } else {
+        ""
+    };
+    CaseError::NotJson { message: format!("{error}{hint}") }
+}
+
+/// Gives each item of the array under `field` of the outermost object to `take`, in turn.
+pub fn each(
+    text: &str,
+    field: &'static str,
+    expected: &str,
+    mut take: impl FnMut(usize, &Value) -> Result<(), CaseError>,
+) -> Result<(), CaseError> {
+    let (mut found, mut refused) = (false, None);
+    let keep = |index, value| match take(index, &value) {
+        Ok(()) => true,
+        Err(error) => {
+            refused = Some(error);
+            false
+        }
+    };
+    let mut reader = serde_json::Deserializer::from_str(text);
+    let read =
+        reader.deserialize_any(Items { field, take: keep, found: &mut found }).and_then(|()| reader.end());
+    match (read, refused) {
+        (_, Some(refused)) => Err(refused),
+        (Err(error), _) if found || !error.to_string().starts_with("invalid type") => {
+            Err(not_json(text, &error))
+        }
+        (Ok(()), _) if found => Ok(()),
+        _ => {
+            Err(CaseError::File { field: field.into(), message: format!("missing or no array; {expected}") })
+        }
+    }
 }
 
 /// The fields of one object of a case.
