@@ -328,6 +328,9 @@ typedef struct Arealight Arealight;
 // Triangles that block shadow rays, in a hierarchy of boxes, for hosts that have none of their own.
 typedef struct ArealightBlockers ArealightBlockers;
 
+// A medium, such as fog, before what an ArealightPass shaded.
+typedef struct ArealightMediumPass ArealightMediumPass;
+
 // A shade pass, specialised for surfaces and a quality.
 typedef struct ArealightPass ArealightPass;
 
@@ -565,6 +568,19 @@ typedef struct ArealightPassOptions {
     uint32_t descriptors;
 } ArealightPassOptions;
 
+// Options of a medium's pass. All zero: at the middle of each froxel, without shadow rays.
+typedef struct ArealightMediumOptions {
+    // 1: each sample has a ray over each light; 2: one ray alone, over a light that is drawn by how much of
+    // it is scattered there. 0: none.
+    uint32_t shadow_rays;
+    // At how many points of a froxel light is scattered, each with rays of its own. 0 is 1.
+    uint32_t samples;
+    // 1: scattering and extinction are read from ArealightMediumResources.medium. Else 0.
+    uint32_t by_image;
+    // 1: a froxel's distance is drawn within it, by ArealightMediumFrame.seed. Else 0.
+    uint32_t jitter;
+} ArealightMediumOptions;
+
 // The resources of a descriptor set.
 typedef struct ArealightSetLayout {
     // VkDescriptorSetLayout, the library's own.
@@ -634,16 +650,19 @@ typedef struct ArealightResources {
     struct ArealightBuffer light_counts;
 } ArealightResources;
 
-// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before
-// another frame uses it, the host waits for the stages `TRANSFER`, `COMPUTE_SHADER` and `DRAW_INDIRECT`.
-typedef struct ArealightTileMemory {
-    // Bytes; 0 for a pass without tiles.
-    uint64_t size;
-    // VkBufferUsageFlags that it is made with.
-    uint32_t usage;
-    // 0
-    uint32_t reserved;
-} ArealightTileMemory;
+// The host's resources of a medium's pass beyond those of its shade pass.
+typedef struct ArealightMediumResources {
+    // A 3D storage image (rgba16f) of ArealightMediumFrame.froxels, in VK_IMAGE_LAYOUT_GENERAL. The pass
+    // alone writes it: radiance up to a froxel's far side, in a the part that is let through.
+    struct ArealightImage froxels;
+    // With ArealightMediumOptions.by_image a 3D image of that size: per unit of length scattering in rgb,
+    // extinction in a. Else 0.
+    struct ArealightImage medium;
+    // With shadow rays ArealightBlockerArrays.nodes. 0 with a module of the host's.
+    struct ArealightBuffer blocker_nodes;
+    // ArealightBlockerArrays.triangles; without triangles, any buffer. 0 with a module of the host's.
+    struct ArealightBuffer blocker_triangles;
+} ArealightMediumResources;
 
 // The rectangle of a G-buffer's texels that clip space was drawn to: VkViewport.
 typedef struct ArealightViewport {
@@ -699,6 +718,42 @@ typedef struct ArealightFrame {
     // bytes after what the set was written with. Else 0.
     uint32_t light_offsets[3];
 } ArealightFrame;
+
+// A frame of a medium's pass.
+typedef struct ArealightMediumFrame {
+    // That of the shade pass, of a perspective camera, with `position_from_clip`; its size, camera, matrix
+    // and lights count.
+    const struct ArealightFrame *frame;
+    // VkDescriptorSet for set 1 of a module of the host's. Else 0.
+    uint64_t host_set;
+    // Across, down and away from the camera, each from 1 to 65535: such as 160 x 90 x 64.
+    uint32_t froxels[3];
+    // What is scattered per unit of length, a channel: extinction times albedo. From 0.
+    float scattering[3];
+    // What is scattered or absorbed per unit of length. From 0.
+    float extinction;
+    // The mean cosine of the angle by which light is turned, in (-1, 1).
+    float anisotropy;
+    // Slices are even up to about this distance, then each is longer by a factor. Above 0.
+    float nearest;
+    // Where the last slice ends. Above `nearest`.
+    float farthest;
+    // Of random numbers: one more in each frame.
+    uint32_t seed;
+    // 0
+    uint32_t reserved;
+} ArealightMediumFrame;
+
+// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before
+// another frame uses it, the host waits for the stages `TRANSFER`, `COMPUTE_SHADER` and `DRAW_INDIRECT`.
+typedef struct ArealightTileMemory {
+    // Bytes; 0 for a pass without tiles.
+    uint64_t size;
+    // VkBufferUsageFlags that it is made with.
+    uint32_t usage;
+    // 0
+    uint32_t reserved;
+} ArealightTileMemory;
 
 // Arrays of the host for blockers, as the buffers of ArealightShadowResources hold them; aligned to 4 bytes,
 // null to ask for the sizes alone.
@@ -918,6 +973,72 @@ enum ArealightResult arealight_light_reach(const struct ArealightLight *light,
                                            double threshold,
                                            double density,
                                            struct ArealightReach *out);
+
+// Makes a medium's pass, after shade passes of `options`, of which position, radiance_format and quality
+// count; its rays meet ArealightMediumResources.blocker_nodes. `*out` is the host's to destroy.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_medium_pass_create(const struct Arealight *arealight,
+                                                  const struct ArealightPassOptions *options,
+                                                  const struct ArealightMediumOptions *medium,
+                                                  struct ArealightMediumPass **out);
+
+// As arealight_medium_pass_create, of a module that the host compiled from `medium_scatter.comp` of
+// `arealight export` with its own answer to what arrives of a light: as
+// arealight_shadow_pass_create_with_module.
+//
+// The host sees to it:
+// As arealight_shadow_pass_create_with_module.
+enum ArealightResult arealight_medium_pass_create_with_module(const struct Arealight *arealight,
+                                                              const struct ArealightPassOptions *options,
+                                                              const struct ArealightMediumOptions *medium,
+                                                              const uint32_t *words,
+                                                              size_t size,
+                                                              uint64_t host_set_layout,
+                                                              struct ArealightMediumPass **out);
+
+// What descriptor sets of the pass are made with.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_medium_pass_set_layout(const struct ArealightMediumPass *pass,
+                                                      struct ArealightSetLayout *out);
+
+// Points a VkDescriptorSet, made with arealight_medium_pass_set_layout, at resources: of `shade` the lights,
+// AREALIGHT_PLANE_POSITION and the radiance that the medium is put before.
+//
+// The host sees to it:
+// Pointers are null or valid. No pending commands use the set, and the resources outlive those that will.
+enum ArealightResult arealight_medium_pass_write_set(const struct ArealightMediumPass *pass,
+                                                     const struct Arealight *arealight,
+                                                     uint64_t set,
+                                                     const struct ArealightResources *shade,
+                                                     const struct ArealightMediumResources *resources);
+
+// Makes the pipelines for frames whose lights need what this one's do, if they are not made yet: what
+// arealight_medium_pass_record would take a moment for otherwise.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_medium_pass_prepare(const struct ArealightMediumPass *pass,
+                                                   const struct ArealightFrame *frame);
+
+// Records the pass into a VkCommandBuffer, after the frame's radiance: three dispatches, with barriers
+// between them. The barrier for what was shaded is the host's, and so is one after.
+//
+// The host sees to it:
+// As arealight_pass_record.
+enum ArealightResult arealight_medium_pass_record(const struct ArealightMediumPass *pass,
+                                                  void *command_buffer,
+                                                  uint64_t set,
+                                                  const struct ArealightMediumFrame *frame);
+
+// Destroys a pass, before or after the object that it was made from. Null is nothing.
+//
+// The host sees to it:
+// No commands of the pass are pending, the device is alive, and no other thread uses the pass.
+enum ArealightResult arealight_medium_pass_destroy(struct ArealightMediumPass *pass);
 
 // Makes a pass. Its pipelines are made when the first frame is recorded whose lights need them, or ahead by
 // arealight_pass_prepare. `*out` is the host's to destroy.
@@ -1351,6 +1472,27 @@ AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, frame) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, host_set) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, origin_shift) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, reserved) == 28);
+AREALIGHT_ASSERT(sizeof(ArealightMediumOptions) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, shadow_rays) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, samples) == 4);
+AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, by_image) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, jitter) == 12);
+AREALIGHT_ASSERT(sizeof(ArealightMediumResources) == 80);
+AREALIGHT_ASSERT(offsetof(ArealightMediumResources, froxels) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightMediumResources, medium) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightMediumResources, blocker_nodes) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightMediumResources, blocker_triangles) == 56);
+AREALIGHT_ASSERT(sizeof(ArealightMediumFrame) == 64);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, frame) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, host_set) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, froxels) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, scattering) == 28);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, extinction) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, anisotropy) == 44);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, nearest) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, farthest) == 52);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, seed) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, reserved) == 60);
 AREALIGHT_ASSERT(sizeof(ArealightBlockerArrays) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, nodes) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, triangles) == 8);

@@ -14,6 +14,7 @@
 //! | [`pass`] | the shade pass |
 //! | [`lights`] | lights, packed for its frames |
 //! | [`shadows`] | the shadow pass, and what blocks its rays |
+//! | [`medium`] | the pass of a medium: fog, smoke, haze |
 //! | [`textures`] | the images of textured lights |
 //! | `arguments` | pointers of the host, checked as far as they can be |
 //! | `failure` | results, messages, and panics that stay inside |
@@ -33,6 +34,7 @@ mod failure;
 mod handles;
 pub mod lights;
 mod loader;
+pub mod medium;
 mod options;
 pub mod pass;
 pub mod shadows;
@@ -43,6 +45,7 @@ pub use constants::*;
 pub use device::*;
 pub use failure::{ArealightResult, arealight_last_error};
 pub use lights::*;
+pub use medium::*;
 pub use pass::*;
 pub use shadows::*;
 pub use textures::*;
@@ -59,6 +62,7 @@ const _: fn() = || {
     shared::<Arealight>();
     shared::<ArealightPass>();
     shared::<ArealightShadowPass>();
+    shared::<ArealightMediumPass>();
     shared::<ArealightBlockers>();
     shared::<ArealightTextures>();
 };

@@ -67,15 +67,35 @@ pub unsafe extern "C" fn arealight_pass_create_with_module(
                 host's own",
             ));
         }
-        if !size.is_multiple_of(4) {
-            return Err(Failure::argument(format!("size: {size} bytes are no whole words of SPIR-V")));
-        }
         // SAFETY: the same contract, here and below.
-        let words = unsafe { arguments::array(words, size / 4, "words") }?;
-        Ok(Some(words.to_vec()))
+        Ok(Some(unsafe { module_words(words, size) }?))
     };
     // SAFETY: the same contract; the pass is the host's to destroy.
     call(|| unsafe { create(arealight, options, out, module) })
+}
+
+/// The words of a module of `size` bytes.
+///
+/// # Safety
+/// The pointer is null or valid.
+unsafe fn module_words(words: *const u32, size: usize) -> Result<Vec<u32>, Failure> {
+    if !size.is_multiple_of(4) {
+        return Err(Failure::argument(format!("size: {size} bytes are no whole words of SPIR-V")));
+    }
+    // SAFETY: the same contract.
+    Ok(unsafe { arguments::array(words, size / 4, "words") }?.to_vec())
+}
+
+/// A module of the host's for rays, and the layout of set 1, which it reads.
+pub(crate) type HostModule = (Option<Vec<u32>>, Option<vk::DescriptorSetLayout>);
+
+/// # Safety
+/// The pointer is null or valid.
+pub(crate) unsafe fn host_module(words: *const u32, size: usize, layout: u64) -> Result<HostModule, Failure> {
+    arguments::refuse_null([(layout == 0, "host_set_layout")])?;
+    // SAFETY: the same contract.
+    let words = unsafe { module_words(words, size) }?;
+    Ok((Some(words), Some(vk::DescriptorSetLayout::from_raw(layout))))
 }
 
 /// # Safety
@@ -119,12 +139,10 @@ pub unsafe extern "C" fn arealight_pass_set_layout(
     pass: *const ArealightPass,
     out: *mut ArealightSetLayout,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let pass = &unsafe { handles::borrow(pass, "pass") }?.pass;
-        let layout = set_layout(pass.set_layout(), &pass.pool_sizes(1));
-        // SAFETY: as above.
-        unsafe { arguments::write(out, layout, "out") }
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let pass = &handles::borrow(pass, "pass")?.pass;
+        arguments::write(out, set_layout(pass.set_layout(), &pass.pool_sizes(1)), "out")
     })
 }
 
@@ -157,19 +175,13 @@ pub unsafe extern "C" fn arealight_pass_write_set(
     set: u64,
     resources: *const ArealightResources,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers.
-        let (pass, arealight, resources) = unsafe {
-            (
-                &handles::borrow(pass, "pass")?.pass,
-                handles::borrow(arealight, "arealight")?,
-                arguments::read(resources, "resources")?,
-            )
-        };
+    // SAFETY: the caller vouches for the pointers, the set and the resources.
+    call(|| unsafe {
+        let pass = &handles::borrow(pass, "pass")?.pass;
+        let arealight = handles::borrow(arealight, "arealight")?;
         arguments::refuse_null([(set == 0, "set")])?;
-        let resources = resources_of(pass, arealight, resources)?;
-        // SAFETY: the caller vouches for the set and the resources.
-        Ok(unsafe { pass.write_set(vk::DescriptorSet::from_raw(set), &resources) }?)
+        let resources = resources_of(pass, arealight, arguments::read(resources, "resources")?)?;
+        Ok(pass.write_set(vk::DescriptorSet::from_raw(set), &resources)?)
     })
 }
 
@@ -206,7 +218,7 @@ pub(crate) fn read_resources(
         table,
         lights: buffer(resources.lights),
         light_vertices: buffer(resources.light_vertices),
-        shapes: (resources.shapes.buffer != 0).then(|| buffer(resources.shapes)),
+        shapes: given(resources.shapes),
         light_textures: (resources.light_textures.view != 0).then(|| filtered(resources.light_textures)),
         planes: Planes::from_fn(|plane| {
             let image = resources.planes[plane as usize];
@@ -214,8 +226,8 @@ pub(crate) fn read_resources(
         }),
         radiance: stored(resources.radiance),
         glossy: (resources.glossy.view != 0).then(|| stored(resources.glossy)),
-        light_counts: (resources.light_counts.buffer != 0).then(|| buffer(resources.light_counts)),
-        picks: (resources.shadow_picks.buffer != 0).then(|| buffer(resources.shadow_picks)),
+        light_counts: given(resources.light_counts),
+        picks: given(resources.shadow_picks),
         ..ShadeResources::default()
     })
 }
@@ -234,9 +246,26 @@ fn filtered(image: ArealightImage) -> Resource {
     Resource::FilteredImage { view: vk::ImageView::from_raw(image.view), layout }
 }
 
-pub(crate) fn buffer(buffer: ArealightBuffer) -> Resource {
+fn buffer(buffer: ArealightBuffer) -> Resource {
     let ArealightBuffer { buffer, offset, range } = buffer;
     Resource::StorageBuffer { buffer: vk::Buffer::from_raw(buffer), offset, range }
+}
+
+/// A buffer that may be 0.
+pub(crate) fn given(range: ArealightBuffer) -> Option<Resource> {
+    (range.buffer != 0).then(|| buffer(range))
+}
+
+/// A command buffer, and sets of which the host's may be 0.
+pub(crate) fn bound(
+    command_buffer: *mut c_void,
+    set: u64,
+    host_set: u64,
+) -> Result<(vk::CommandBuffer, Bound<'static>), Failure> {
+    arguments::refuse_null([(command_buffer.is_null(), "command_buffer"), (set == 0, "set")])?;
+    let sets = [set, host_set].map(vk::DescriptorSet::from_raw);
+    let bound = if host_set == 0 { Bound::Set(sets[0]) } else { Bound::Sets(sets) };
+    Ok((vk::CommandBuffer::from_raw(command_buffer as u64), bound))
 }
 
 /// What the buffer of the lists of tiles needs, for radiance images of `width` x `height` pixels.
@@ -278,17 +307,12 @@ pub unsafe extern "C" fn arealight_pass_record(
     set: u64,
     frame: *const ArealightFrame,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let (pass, frame) =
-            unsafe { (&handles::borrow(pass, "pass")?.pass, arguments::read(frame, "frame")?) };
-        arguments::refuse_null([(command_buffer.is_null(), "command_buffer"), (set == 0, "set")])?;
-        // SAFETY: as above.
-        let frame = unsafe { read_frame_of(pass, frame) }?;
-        let (command_buffer, set) =
-            (vk::CommandBuffer::from_raw(command_buffer as u64), vk::DescriptorSet::from_raw(set));
-        // SAFETY: the caller vouches for the command buffer and the set.
-        Ok(unsafe { pass.record(command_buffer, set, &frame) }?)
+    // SAFETY: the caller vouches for the pointers, the command buffer and the set.
+    call(|| unsafe {
+        let pass = &handles::borrow(pass, "pass")?.pass;
+        let frame = read_frame_of(pass, arguments::read(frame, "frame")?)?;
+        let (commands, bound) = bound(command_buffer, set, 0)?;
+        Ok(pass.record(commands, bound, &frame)?)
     })
 }
 
@@ -305,23 +329,16 @@ pub unsafe extern "C" fn arealight_pass_record_pushed(
     resources: *const ArealightResources,
     frame: *const ArealightFrame,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let (pass, arealight, resources, frame) = unsafe {
-            let pass = &handles::borrow(pass, "pass")?.pass;
-            (
-                pass,
-                handles::borrow(arealight, "arealight")?,
-                arguments::read(resources, "resources")?,
-                read_frame_of(pass, arguments::read(frame, "frame")?)?,
-            )
-        };
+    // SAFETY: the caller vouches for the pointers, the command buffer and the resources.
+    call(|| unsafe {
+        let pass = &handles::borrow(pass, "pass")?.pass;
+        let arealight = handles::borrow(arealight, "arealight")?;
+        let resources = resources_of(pass, arealight, arguments::read(resources, "resources")?)?;
+        let frame = read_frame_of(pass, arguments::read(frame, "frame")?)?;
         arguments::refuse_null([(command_buffer.is_null(), "command_buffer")])?;
-        let resources = resources_of(pass, arealight, resources)?;
         let command_buffer = vk::CommandBuffer::from_raw(command_buffer as u64);
         let bound = Bound::Pushed { resources: &resources, host_set: None };
-        // SAFETY: the caller vouches for the command buffer and the resources.
-        Ok(unsafe { pass.record(command_buffer, bound, &frame) }?)
+        Ok(pass.record(command_buffer, bound, &frame)?)
     })
 }
 
@@ -361,7 +378,7 @@ pub(crate) unsafe fn read_frame(frame: &ArealightFrame) -> Result<ShadeFrame, Fa
         camera: Vec3::from_array(frame.camera),
         position_from_clip: matrix.transpose()?.map(Mat4::from_cols_slice),
         lights: read_summary(frame.lights)?,
-        tile_lists: (frame.tile_lists.buffer != 0).then(|| buffer(frame.tile_lists)),
+        tile_lists: given(frame.tile_lists),
         seed: frame.seed,
         offset: frame.offset,
         rows: (frame.rows != [0, 0]).then_some(frame.rows),
@@ -394,13 +411,10 @@ pub unsafe extern "C" fn arealight_pass_prepare(
     pass: *const ArealightPass,
     frame: *const ArealightFrame,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers.
-        let (pass, frame) = unsafe {
-            let pass = &handles::borrow(pass, "pass")?.pass;
-            (pass, read_frame_of(pass, arguments::read(frame, "frame")?)?)
-        };
-        Ok(pass.prepare(&frame)?)
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let pass = &handles::borrow(pass, "pass")?.pass;
+        Ok(pass.prepare(&read_frame_of(pass, arguments::read(frame, "frame")?)?)?)
     })
 }
 

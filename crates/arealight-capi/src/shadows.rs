@@ -4,17 +4,19 @@ use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
 use crate::lights::{check_size, copy};
 use crate::options::{level, shade_options};
-use crate::pass::{ArealightPass, buffer, read_frame, read_resources, set_layout, stored};
+use crate::pass::{
+    ArealightPass, HostModule, bound, given, host_module, read_frame, read_resources, set_layout, stored,
+};
 use crate::types::{
-    ArealightBlockerArrays, ArealightBuffer, ArealightFrame, ArealightPassOptions, ArealightResources,
-    ArealightSetLayout, ArealightShadowFrame, ArealightShadowOptions, ArealightShadowResources,
+    ArealightBlockerArrays, ArealightFrame, ArealightPassOptions, ArealightResources, ArealightSetLayout,
+    ArealightShadowFrame, ArealightShadowOptions, ArealightShadowResources,
 };
 use crate::{arguments, handles};
 use arealight::plan::{self, Output, ShadowFilter, ShadowHistory};
 use arealight::{BlockerError, Blockers};
 use arealight_vk::ash::vk::{self, Handle as _};
 use arealight_vk::{
-    BlockerResources, Bound, ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo, ShadowResources,
+    BlockerResources, ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo, ShadowResources,
 };
 use bytemuck::cast_slice;
 use glam::Vec3;
@@ -126,12 +128,7 @@ pub unsafe extern "C" fn arealight_shadow_pass_create(
     out: *mut *mut ArealightShadowPass,
 ) -> ArealightResult {
     // SAFETY: the same contract; the pass is the host's to destroy.
-    call(|| unsafe {
-        create(arealight, options, shadows, out, |arealight, options, shadows| {
-            let info = ShadowPassInfo { options, shadows, ..ShadowPassInfo::default() };
-            Ok(ShadowPass::new(arealight.context(), info)?)
-        })
-    })
+    call(|| unsafe { create(arealight, options, shadows, out, || Ok(HostModule::default())) })
 }
 
 /// As arealight_shadow_pass_create, of a module that the host compiled from `shadow_rays.comp` of
@@ -153,18 +150,7 @@ pub unsafe extern "C" fn arealight_shadow_pass_create_with_module(
     out: *mut *mut ArealightShadowPass,
 ) -> ArealightResult {
     // SAFETY: the same contract; the pass is the host's to destroy.
-    call(|| unsafe {
-        create(arealight, options, shadows, out, |arealight, options, shadows| {
-            arguments::refuse_null([(host_set_layout == 0, "host_set_layout")])?;
-            if !size.is_multiple_of(4) {
-                return Err(Failure::argument(format!("size: {size} bytes are no whole words of SPIR-V")));
-            }
-            let words = arguments::array(words, size / 4, "words")?.to_vec();
-            let layout = vk::DescriptorSetLayout::from_raw(host_set_layout);
-            let info = ShadowPassInfo { options, shadows, module: Some(words), host_set: Some(layout) };
-            Ok(ShadowPass::new(arealight.context(), info)?)
-        })
-    })
+    call(|| unsafe { create(arealight, options, shadows, out, || host_module(words, size, host_set_layout)) })
 }
 
 /// # Safety
@@ -174,20 +160,19 @@ unsafe fn create(
     options: *const ArealightPassOptions,
     shadows: *const ArealightShadowOptions,
     out: *mut *mut ArealightShadowPass,
-    make: impl FnOnce(&Arealight, plan::ShadeOptions, ShadowOptions) -> Result<ShadowPass, Failure>,
+    module: impl FnOnce() -> Result<HostModule, Failure>,
 ) -> Result<(), Failure> {
-    // SAFETY: the same contract, here and below.
-    let (arealight, options, shadows) = unsafe {
+    // SAFETY: the same contract; the host vouches for the module.
+    unsafe {
         arguments::write(out, std::ptr::null_mut(), "out")?;
-        (
-            handles::borrow(arealight, "arealight")?,
-            arguments::read(options, "options")?,
-            arguments::read(shadows, "shadows")?,
-        )
-    };
-    let pass = make(arealight, shade_options(options)?, shadow_options(shadows)?)?;
-    // SAFETY: as above.
-    unsafe { arguments::write(out, handles::give(ArealightShadowPass { pass }), "out") }
+        let arealight = handles::borrow(arealight, "arealight")?;
+        let options = shade_options(arguments::read(options, "options")?)?;
+        let shadows = shadow_options(arguments::read(shadows, "shadows")?)?;
+        let (module, host_set) = module()?;
+        let info = ShadowPassInfo { options, shadows, module, host_set };
+        let pass = ShadowPass::new(arealight.context(), info)?;
+        arguments::write(out, handles::give(ArealightShadowPass { pass }), "out")
+    }
 }
 
 fn shadow_options(options: &ArealightShadowOptions) -> Result<ShadowOptions, Failure> {
@@ -245,12 +230,10 @@ pub unsafe extern "C" fn arealight_shadow_pass_set_layout(
     pass: *const ArealightShadowPass,
     out: *mut ArealightSetLayout,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let pass = &unsafe { handles::borrow(pass, "pass") }?.pass;
-        let layout = set_layout(pass.set_layout(), &pass.pool_sizes(1));
-        // SAFETY: as above.
-        unsafe { arguments::write(out, layout, "out") }
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let pass = &handles::borrow(pass, "pass")?.pass;
+        arguments::write(out, set_layout(pass.set_layout(), &pass.pool_sizes(1)), "out")
     })
 }
 
@@ -267,25 +250,18 @@ pub unsafe extern "C" fn arealight_shadow_pass_write_set(
     shade: *const ArealightResources,
     resources: *const ArealightShadowResources,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers.
-        let (pass, arealight, shade, resources) = unsafe {
-            (
-                &handles::borrow(pass, "pass")?.pass,
-                handles::borrow(arealight, "arealight")?,
-                arguments::read(shade, "shade")?,
-                arguments::read(resources, "resources")?,
-            )
-        };
+    // SAFETY: the caller vouches for the pointers, the set and the resources.
+    call(|| unsafe {
+        let pass = &handles::borrow(pass, "pass")?.pass;
+        let arealight = handles::borrow(arealight, "arealight")?;
         arguments::refuse_null([(set == 0, "set")])?;
-        let (shade, resources) = (read_resources(arealight, shade)?, read_shadow_resources(resources));
-        // SAFETY: the caller vouches for the set and the resources.
-        Ok(unsafe { pass.write_set(vk::DescriptorSet::from_raw(set), &shade, &resources) }?)
+        let shade = read_resources(arealight, arguments::read(shade, "shade")?)?;
+        let resources = read_shadow_resources(arguments::read(resources, "resources")?);
+        Ok(pass.write_set(vk::DescriptorSet::from_raw(set), &shade, &resources)?)
     })
 }
 
 fn read_shadow_resources(resources: &ArealightShadowResources) -> ShadowResources {
-    let given = |range: ArealightBuffer| (range.buffer != 0).then(|| buffer(range));
     let blockers = given(resources.blocker_nodes).zip(given(resources.blocker_triangles));
     ShadowResources {
         shadow: stored(resources.shadow),
@@ -305,11 +281,10 @@ pub unsafe extern "C" fn arealight_shadow_pass_prepare(
     pass: *const ArealightShadowPass,
     frame: *const ArealightFrame,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers.
-        let (pass, frame) =
-            unsafe { (&handles::borrow(pass, "pass")?.pass, read_frame(arguments::read(frame, "frame")?)?) };
-        Ok(pass.prepare(frame.lights)?)
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let pass = &handles::borrow(pass, "pass")?.pass;
+        Ok(pass.prepare(read_frame(arguments::read(frame, "frame")?)?.lights)?)
     })
 }
 
@@ -328,28 +303,16 @@ pub unsafe extern "C" fn arealight_shadow_pass_record(
     resources: *const ArealightShadowResources,
     frame: *const ArealightShadowFrame,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let (pass, resources, given) = unsafe {
-            (
-                &handles::borrow(pass, "pass")?.pass,
-                arguments::read(resources, "resources")?,
-                arguments::read(frame, "frame")?,
-            )
-        };
-        arguments::refuse_null([(command_buffer.is_null(), "command_buffer"), (set == 0, "set")])?;
+    // SAFETY: the caller vouches for the pointers, the command buffer and the sets.
+    call(|| unsafe {
+        let pass = &handles::borrow(pass, "pass")?.pass;
+        let resources = read_shadow_resources(arguments::read(resources, "resources")?);
+        let given = arguments::read(frame, "frame")?;
+        let (commands, bound) = bound(command_buffer, set, given.host_set)?;
         arguments::refuse_reserved(given.reserved, "frame.reserved")?;
-        // SAFETY: as above.
-        let shade = unsafe { read_frame(arguments::read(given.frame, "frame.frame")?) }?;
+        let shade = read_frame(arguments::read(given.frame, "frame.frame")?)?;
         let frame = ShadowFrame { shade: &shade, origin_shift: Vec3::from_array(given.origin_shift) };
-        let (commands, set) =
-            (vk::CommandBuffer::from_raw(command_buffer as u64), vk::DescriptorSet::from_raw(set));
-        let bound = match given.host_set {
-            0 => Bound::Set(set),
-            host_set => Bound::Sets([set, vk::DescriptorSet::from_raw(host_set)]),
-        };
-        // SAFETY: the caller vouches for the command buffer and the sets.
-        Ok(unsafe { pass.record(commands, bound, &read_shadow_resources(resources), &frame) }?)
+        Ok(pass.record(commands, bound, &resources, &frame)?)
     })
 }
 

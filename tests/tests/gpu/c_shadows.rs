@@ -1,12 +1,15 @@
-//! Shadows of a host in C are the recorder's, to the last bit.
+//! Shadows of a host in C are the recorder's, to the last bit; its media are what is known of them.
 
 use arealight::Blockers;
 use arealight::plan::ShadowFilter;
 use arealight_capi::{
     AREALIGHT_SHADOW_FILTER_GATHER, AREALIGHT_WHOLE_SIZE, ArealightBlockerArrays, ArealightBuffer,
-    ArealightFrame, ArealightImage, ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult,
-    ArealightSetLayout, ArealightShadowFrame, ArealightShadowOptions, ArealightShadowPass,
-    ArealightShadowResources, arealight_blockers_create, arealight_blockers_destroy, arealight_blockers_read,
+    ArealightFrame, ArealightImage, ArealightMediumFrame, ArealightMediumOptions, ArealightMediumResources,
+    ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult, ArealightSetLayout,
+    ArealightShadowFrame, ArealightShadowOptions, ArealightShadowPass, ArealightShadowResources,
+    arealight_blockers_create, arealight_blockers_destroy, arealight_blockers_read,
+    arealight_medium_pass_create, arealight_medium_pass_destroy, arealight_medium_pass_prepare,
+    arealight_medium_pass_record, arealight_medium_pass_set_layout, arealight_medium_pass_write_set,
     arealight_pack_lights, arealight_pass_create, arealight_pass_destroy, arealight_pass_record,
     arealight_pass_shadow_picks_size, arealight_pass_write_set, arealight_shadow_pass_create,
     arealight_shadow_pass_destroy, arealight_shadow_pass_prepare, arealight_shadow_pass_record,
@@ -18,7 +21,7 @@ use arealight_tests::c_library::{
 };
 use arealight_tests::prelude::*;
 use arealight_tests::shadow_patch::{PatchPasses, SIDE, ShadowPatch, filled, stored};
-use arealight_vk::ShadowPass;
+use arealight_vk::{MediumPass, ShadowPass};
 use ash::vk::{self, Handle as _};
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
@@ -64,6 +67,9 @@ struct CPasses<'a> {
     shadow: *mut ArealightShadowPass,
 }
 
+/// From clip space to places that the camera sees.
+const FROM_CLIP: [f32; 16] = glam::Mat4::IDENTITY.to_cols_array();
+
 /// An image as C has it.
 fn image(image: &Image, usage: Usage) -> ArealightImage {
     ArealightImage { view: image.view().as_raw(), layout: usage.layout.as_raw().cast_unsigned(), reserved: 0 }
@@ -101,8 +107,8 @@ impl<'a> CPasses<'a> {
         layout
     }
 
-    /// What the patch shows, with shadows.
-    fn run(&self, patch: &ShadowPatch, seed: u32) -> Vec<Vec4> {
+    /// What the patch shows, with shadows; or without, through a medium.
+    fn run(&self, patch: &ShadowPatch, seed: u32, medium: Option<(u32, &ArealightMediumFrame)>) -> Vec<Vec4> {
         let (engine, host) = (self.engine, self.engine.host());
         let lights: Vec<_> = patch.lights.iter().map(c_lamp).collect();
         let mut packed = NO_ARRAYS;
@@ -155,6 +161,7 @@ impl<'a> CPasses<'a> {
             camera: patch.view.to_array(),
             lights: packed.summary,
             seed,
+            position_from_clip: FROM_CLIP.as_ptr(),
             ..NO_FRAME
         };
         let shadow_frame = ArealightShadowFrame {
@@ -201,8 +208,66 @@ impl<'a> CPasses<'a> {
             })
             .unwrap();
         }
-        let texels: Vec<[f32; 4]> = shadowed.download(Usage::COMPUTE_WRITE).unwrap();
+        if let Some(medium) = medium {
+            self.put_before(&resources, &of_shadows, &frame, medium);
+        }
+        let seen = if medium.is_some() { radiance } else { shadowed };
+        let texels: Vec<[f32; 4]> = seen.download(Usage::COMPUTE_WRITE).unwrap();
         texels.into_iter().map(Vec4::from_array).collect()
+    }
+}
+
+impl CPasses<'_> {
+    /// Puts a medium before what was shaded.
+    fn put_before(
+        &self,
+        shade: &ArealightResources,
+        blockers: &ArealightShadowResources,
+        of_shade: &ArealightFrame,
+        (shadow_rays, medium): (u32, &ArealightMediumFrame),
+    ) {
+        let frame = &ArealightMediumFrame { frame: of_shade, ..*medium };
+        let (host, arealight) = (self.engine.host(), self.library.arealight);
+        let options = ArealightPassOptions::default();
+        let medium = ArealightMediumOptions { shadow_rays, ..ArealightMediumOptions::default() };
+        let (mut pass, mut layout) = (null_mut(), ArealightSetLayout::default());
+        let [width, height, depth] = frame.froxels;
+        let (format, usage) = (MediumPass::FORMAT, vk::ImageUsageFlags::STORAGE);
+        let description =
+            ImageDescription { name: "froxels", extent: [width, height], layers: 1, format, usage };
+        let volume = host.volume(&description, depth).unwrap();
+        let resources = ArealightMediumResources {
+            froxels: image(&volume, Usage::COMPUTE_WRITE),
+            medium: ArealightImage::default(),
+            blocker_nodes: blockers.blocker_nodes,
+            blocker_triangles: blockers.blocker_triangles,
+        };
+        // SAFETY: the pointers are valid, and what the set points to lives until submissions were waited for.
+        unsafe {
+            let create = |options: &_, medium: &_, pass: &mut _| {
+                arealight_medium_pass_create(arealight, options, medium, pass)
+            };
+            let wrong = ArealightMediumOptions { shadow_rays: 3, ..medium };
+            let refusal = create(&options, &wrong, &mut pass);
+            refused(refusal, ArealightResult::ErrorArgument, "medium.shadow_rays");
+            good(create(&options, &medium, &mut pass));
+            good(arealight_medium_pass_set_layout(pass, &raw mut layout));
+            let (set, _pool) = self.library.set(&layout);
+            let set = set.as_raw();
+            good(arealight_medium_pass_write_set(pass, arealight, set, shade, &raw const resources));
+            good(arealight_medium_pass_prepare(pass, frame.frame));
+            host.submit(|commands| {
+                volume.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
+                let commands = commands.as_raw() as *mut c_void;
+                let no_matrix = ArealightFrame { position_from_clip: null(), ..*frame.frame };
+                let wrong = ArealightMediumFrame { frame: &raw const no_matrix, ..*frame };
+                let refusal = arealight_medium_pass_record(pass, commands, set, &raw const wrong);
+                refused(refusal, ArealightResult::ErrorArgument, "position_from_clip");
+                good(arealight_medium_pass_record(pass, commands, set, frame));
+            })
+            .unwrap();
+            good(arealight_medium_pass_destroy(pass));
+        }
     }
 }
 
@@ -227,7 +292,7 @@ fn c_draws_the_shadows_that_rust_does_to_the_last_bit() {
     let memory = DeviceMemory::new(engine, &library.table_memory());
     library.upload(&memory);
     let passes = CPasses::new(engine, &library, 2);
-    let c = passes.run(&patch, 0);
+    let c = passes.run(&patch, 0, None);
     let colors: Vec<Vec3> = c.iter().map(|texel| texel.truncate()).collect();
     assert_eq!(colors, rust.radiance);
 
@@ -236,10 +301,58 @@ fn c_draws_the_shadows_that_rust_does_to_the_last_bit() {
     assert!(part > 0.1 && part < 0.9, "{part}");
 
     // The twins: other random numbers, and nothing that blocks
-    assert_ne!(passes.run(&patch, 1), c);
-    let free = passes.run(&ShadowPatch { blockers: vec![[Vec3::ZERO; 3]], ..patch.clone() }, 0);
+    assert_ne!(passes.run(&patch, 1, None), c);
+    let free = passes.run(&ShadowPatch { blockers: vec![[Vec3::ZERO; 3]], ..patch.clone() }, 0, None);
     let lit: Vec<Vec3> = free.iter().map(|texel| texel.truncate()).collect();
     assert_eq!(lit, rust.unshadowed);
+}
+
+#[test]
+fn media_of_c_dim_and_scatter_what_is_known() {
+    let Some(engine) = TestEngine::new() else { return };
+    let library = CLibrary::new(&engine);
+    let memory = DeviceMemory::new(&engine, &library.table_memory());
+    library.upload(&memory);
+    let passes = CPasses::new(&engine, &library, 2);
+    // A lamp is the upper half of what is seen from anywhere, before a wall or behind it
+    let level = |side: f64, z: f64| {
+        [[-side, -side], [-side, side], [side, side], [side, -side]].map(|[x, y]| DVec3::new(x, y, z))
+    };
+    let lights = vec![Light { shape: LightShape::Polygon(level(1e4, 3.0).to_vec()), ..lamp() }];
+    let behind = |z: f64| {
+        let [a, b, c, d] = level(1e5, z).map(DVec3::as_vec3);
+        ShadowPatch { blockers: vec![[a, b, c], [a, c, d]], lights: lights.clone(), ..patch() }
+    };
+    let clear = ArealightMediumFrame {
+        frame: null(),
+        host_set: 0,
+        froxels: [4, 3, 64],
+        scattering: [0.0; 3],
+        extinction: 0.0,
+        anisotropy: 0.0,
+        nearest: 1.0,
+        farthest: 8.0,
+        seed: 0,
+        reserved: 0,
+    };
+    let seen = |frame: &_, rays, wall| passes.run(&behind(wall), 0, Some((rays, frame)))[0].truncate();
+    let (before, away) = (seen(&clear, 0, 2.0), patch().view.length());
+    let scattering = [0.1, 0.2, 0.3];
+    let scattered = Vec3::from_array(scattering) * lights[0].radiance * 0.5 * away;
+    let dim = ArealightMediumFrame { extinction: 0.4, ..clear };
+    let bright = ArealightMediumFrame { scattering, ..clear };
+    for (frame, rays, wall, expected) in [
+        (&dim, 0, 2.0, before * (-0.4 * away).exp()),
+        (&bright, 0, 2.0, before + scattered),
+        (&bright, 1, 4.0, before + scattered),
+        (&bright, 1, 2.0, before),
+        (&bright, 2, 2.0, before),
+    ] {
+        let found = seen(frame, rays, wall);
+        // Sums of froxels have 11 bits; the twins: each other frame's
+        assert!((found - expected).abs().cmple(1e-3 * expected).all(), "{rays}: {found}, not {expected}");
+    }
+    assert!(scattered.cmpgt(0.01 * before).all(), "{scattered}, {before}");
 }
 
 #[test]

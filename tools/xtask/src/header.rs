@@ -74,7 +74,7 @@ macro_rules! layouts {
     };
 }
 
-fn layouts() -> [Layout; 23] {
+fn layouts() -> [Layout; 26] {
     layouts! {
         ArealightHost {
             abi_version, api_version, get_instance_proc_addr, get_device_proc_addr, instance,
@@ -120,6 +120,11 @@ fn layouts() -> [Layout; 23] {
         ArealightShadowOptions { filter, history, output }
         ArealightShadowResources { shadow, radiance, history, blocker_nodes, blocker_triangles }
         ArealightShadowFrame { frame, host_set, origin_shift, reserved }
+        ArealightMediumOptions { shadow_rays, samples, by_image, jitter }
+        ArealightMediumResources { froxels, medium, blocker_nodes, blocker_triangles }
+        ArealightMediumFrame {
+            frame, host_set, froxels, scattering, extinction, anisotropy, nearest, farthest, seed, reserved,
+        }
         ArealightBlockerArrays { nodes, triangles, nodes_size, triangles_size }
         ArealightTextureOptions { side, layers }
         ArealightTextureNeeds { memory, level_set, source_set, level_set_count, reserved }
@@ -166,7 +171,7 @@ mod tests {
     }
 
     /// What a host was compiled with, beside comments: a change of it is another version of the ABI.
-    const ABI: (u32, &str) = (2, "c90ab1415f90f1b5");
+    const ABI: (u32, &str) = (2, "bb0182d9ddca6f72");
 
     #[test]
     fn another_abi_has_another_version() {
