@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The yardstick of media: puts an even one before a picture by Monte Carlo. A sample is a distance along the
-// pixel's ray, drawn as the medium dims it, and of each light a point, from which light comes through the
-// medium and, with shadows, past the scene's triangles. It is scattered once.
+// The yardstick of media: puts an even one before a picture by Monte Carlo. A sample is of each light a
+// distance along the pixel's ray and a point of the light, from which light comes through the medium and,
+// with shadows, past the scene's triangles. It is scattered once.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -57,7 +57,35 @@ float arriving(vec3 position, vec3 offset) {
     return is_hidden ? 0.0 : exp(-constants.extinction * away);
 }
 
-vec3 scattered(vec3 position, vec3 axis, inout RandomState random) {
+// The pixel's ray up to its surface, and the part that the medium lets through.
+struct Ray {
+    vec3 away;
+    float end;
+    float let_through;
+    float random; // the same for all samples, whose places are even so
+};
+
+// A distance along the ray, and what is let through to there over its density: half of them are drawn as the
+// medium dims light, half by equal angles as a light's center sees them (Kulla and Fajardo 2012).
+vec2 draw_distance(Ray ray, vec3 center, uint index) {
+    float stratum = 2.0 * fract(ray.random + 0.618033989 * float(index));
+    float nearest = dot(center - constants.camera, ray.away);
+    float off = max(distance(center - constants.camera, nearest * ray.away), 1e-3 * ray.end);
+    float first = atan(-nearest, off);
+    float angles = atan(ray.end - nearest, off) - first;
+    float extinction = constants.extinction;
+    float dimmed = 1.0 - ray.let_through;
+    float t = stratum >= 1.0 ? nearest + off * tan(first + (stratum - 1.0) * angles)
+        : extinction > 0.0 ? -log(1.0 - stratum * dimmed) / extinction : stratum * ray.end;
+    t = clamp(t, 0.0, ray.end);
+    float through = exp(-extinction * t);
+    float density = extinction > 0.0 ? extinction * through / dimmed : 1.0 / ray.end;
+    density = 0.5 * (density + off / (angles * (off * off + (t - nearest) * (t - nearest))));
+    return vec2(t, through / density);
+}
+
+vec3 scattered(Ray ray, uint sample_index, inout RandomState random) {
+    vec3 axis = ray.away;
     vec3 sum = vec3(0.0);
     for (uint index = 0u; index < constants.light_count; index++) {
         ArealightPolygonLight light = load_polygon(lights[index]);
@@ -65,23 +93,27 @@ vec3 scattered(vec3 position, vec3 axis, inout RandomState random) {
         if (sampling.triangle_count == 0u) {
             continue;
         }
+        vec2 drawn = draw_distance(ray, light.center, sample_index);
+        vec3 position = constants.camera + drawn.x * ray.away;
         LightPoint point = sample_point(sampling, random);
         vec3 offset = point.offset + (light.center - position);
         float density = light_density(light, sampling.area, point.normal, offset, position);
         if (density > 0.0) {
             float phase = arealight_henyey_greenstein(constants.anisotropy, dot(axis, normalize(offset)));
-            float weight = phase * arriving(position, offset) / density;
+            float weight = drawn.y * phase * arriving(position, offset) / density;
             sum += light_radiance(index, light, point, offset) * weight;
         }
     }
     for (uint index = 0u; index < constants.shape_count; index++) {
         ArealightGpuShape shape = shapes[index];
-        ShapeSample drawn = sample_shape(shape, position, random);
-        if (drawn.density > 0.0) {
-            float cosine = dot(axis, normalize(drawn.offset));
+        vec2 drawn = draw_distance(ray, shape.center, sample_index);
+        vec3 position = constants.camera + drawn.x * ray.away;
+        ShapeSample point = sample_shape(shape, position, random);
+        if (point.density > 0.0) {
+            float cosine = dot(axis, normalize(point.offset));
             float phase = arealight_henyey_greenstein(constants.anisotropy, cosine);
-            vec3 color = shape.radiance * shape_color(shape, position, drawn.offset);
-            sum += color * (phase * arriving(position, drawn.offset) / drawn.density);
+            vec3 color = shape.radiance * shape_color(shape, position, point.offset);
+            sum += color * (drawn.y * phase * arriving(position, point.offset) / point.density);
         }
     }
     return sum;
@@ -101,20 +133,16 @@ void main() {
     if (seen.w != 0.0) {
         end = min(end, distance(seen.xyz, constants.camera));
     }
-    float let_through = exp(-constants.extinction * end);
+    RandomState of_pixel = random_begin(uvec3(pixel, 0xffffffffu), constants.seed);
+    Ray ray = Ray(away, end, exp(-constants.extinction * end), random_float(of_pixel));
     vec3 sum = vec3(0.0);
     for (uint index = 0u; index < constants.sample_count; index++) {
         RandomState random = random_begin(uvec3(pixel, constants.first_sample + index), constants.seed);
-        // A stratum of the part that is not let through
-        float place = fract(random_float(random) + 0.618033989 * float(constants.first_sample + index));
-        float t = constants.extinction > 0.0
-            ? -log(1.0 - place * (1.0 - let_through)) / constants.extinction : place * end;
-        sum += scattered(constants.camera + t * away, away, random);
+        sum += scattered(ray, constants.first_sample + index, random);
     }
-    float length = constants.extinction > 0.0 ? (1.0 - let_through) / constants.extinction : end;
     vec4 before = imageLoad(radiance_image, pixel);
-    vec3 radiance = constants.first_sample == 0u ? before.rgb * let_through : before.rgb;
+    vec3 radiance = constants.first_sample == 0u ? before.rgb * ray.let_through : before.rgb;
     vec3 mean = sum / float(max(constants.sample_count, 1u));
-    imageStore(radiance_image, pixel, vec4(radiance + constants.scattering * length * mean * constants.weight,
-                                           before.a));
+    imageStore(radiance_image, pixel,
+               vec4(radiance + constants.scattering * mean * constants.weight, before.a));
 }

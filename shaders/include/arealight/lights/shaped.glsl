@@ -252,11 +252,13 @@ vec3 arealight_image_average(mat3 space, ArealightLocalShaped local, vec3 vector
 }
 
 #if AREALIGHT_SOLID_ANGLES
-// Times the profile's mean from its nearest place to its farthest.
+// Times the profile's mean, as a cosine about its center sees the light.
 float arealight_solid_angle(ArealightLocalShaped local) {
-    float width = local.high.x - local.low.x;
-    float mean = width > 1e-3 ? (local.high.z - local.low.z) / width : 0.5 * (local.low.y + local.high.y);
-    return mean * arealight_solid_angle(local.polygon);
+    vec3 center = local.polygon.center;
+    mat3 space = arealight_frame_matrix(arealight_surface_frame(center, center));
+    float all = length(arealight_vector_form_factor(space, local.polygon));
+    float mean = length(arealight_vector_form_factor(space, local)) / max(all, 1e-30);
+    return min(mean, 1.0) * arealight_solid_angle(local.polygon);
 }
 #endif
 
