@@ -7,16 +7,17 @@ use crate::context::Context;
 use crate::error::{Error, VulkanCall};
 use crate::frame::ShadeFrame;
 use crate::light_textures::TextureUpdate;
+use crate::medium::{MediumFrame, MediumPass, MediumPassInfo};
 use crate::memory::{Buffer, Memory, SharedAllocator};
 use crate::resource::Resource;
 use crate::shade::{Bound, ShadePass, ShadePassInfo, ShadeResources};
-use crate::shadows::{ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo};
+use crate::shadows::{ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo, USED, WRITTEN};
 use crate::table_image::{TableFormat, TableImage};
-use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
+use arealight::plan::{MediumOptions, Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
 use arealight::{Blockers, Light, LightTable, PackedLights, PyramidSize};
 use ash::vk;
 use bytemuck::cast_slice;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Mat4, Vec3};
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocator;
 use place::Place;
@@ -33,6 +34,10 @@ pub struct AreaLightsInfo {
     pub tiles: Option<TileOptions>,
     /// How shadow rays are filtered.
     pub shadow_filter: ShadowFilter,
+    /// A medium before the picture, of perspective cameras. Rays need [`ShadeOptions::shadow_rays`]; as
+    /// [`AreaLightsInfo::options`] has it are depth, format and quality, and as each frame has it size,
+    /// camera, matrix, lights and seed.
+    pub medium: Option<(MediumOptions, MediumFrame)>,
     /// How many frames the host may have recorded that are not done yet.
     pub frames_in_flight: usize,
     /// The table of lobes.
@@ -50,6 +55,7 @@ impl Default for AreaLightsInfo {
             options: ShadeOptions::default(),
             tiles: None,
             shadow_filter: ShadowFilter::default(),
+            medium: None,
             frames_in_flight: 2,
             table: LightTable::ggx(),
             table_format: TableFormat::default(),
@@ -73,6 +79,7 @@ impl Default for AreaLightsInfo {
 pub struct AreaLights {
     shade: ShadePass,
     shadow: Option<ShadowPass>,
+    medium: Option<(MediumPass, MediumFrame)>,
     places: Vec<Place>,
     textures: Option<Textures>,
     table: (TableImage, Memory),
@@ -101,7 +108,7 @@ impl AreaLights {
     /// - It is dropped when no recorded commands are pending, before the device is destroyed.
     ///
     /// # Errors
-    /// As [`Context::new`], [`ShadePass::new`], [`ShadowPass::new`] and
+    /// As [`Context::new`], [`ShadePass::new`], [`ShadowPass::new`], [`MediumPass::new`] and
     /// [`LightTextures::new`](crate::LightTextures::new); [`Error::InvalidArgument`] where there is no frame
     /// in flight; [`Error::Vulkan`] where memory is out.
     pub unsafe fn new(
@@ -136,6 +143,12 @@ impl AreaLights {
         // SAFETY: the same contract, throughout.
         unsafe {
             let (shade, shadow) = passes(context, info)?;
+            let medium = info.medium.map(|(medium, frame)| {
+                let ShadeOptions { from_depth, format, quality, .. } = info.options;
+                let options = MediumOptions { by_image: false, from_depth, format, quality, ..medium };
+                let info = MediumPassInfo { options, ..MediumPassInfo::default() };
+                Ok::<_, Error>((MediumPass::new(context, info)?, frame))
+            });
             let mut image = TableImage::new(context, table, info.table_format)?;
             let memory = allocator.keep(image.allocate(&mut allocator.lock())?);
             let texels = mapped(context, &allocator, &image.bytes(table))?;
@@ -146,6 +159,7 @@ impl AreaLights {
             let mut made = Self {
                 shade,
                 shadow,
+                medium: medium.transpose()?,
                 places: vec![],
                 textures: textures.transpose()?,
                 table: (image, memory),
@@ -178,6 +192,10 @@ impl AreaLights {
             layouts.push(shadow.set_layout());
             sizes.extend(shadow.pool_sizes(count));
         }
+        if let Some((medium, _)) = &self.medium {
+            layouts.push(medium.set_layout());
+            sizes.extend(medium.pool_sizes(count));
+        }
         let info =
             vk::DescriptorPoolCreateInfo::default().max_sets(count * layouts.len() as u32).pool_sizes(&sizes);
         let device = &self.context.device;
@@ -197,6 +215,11 @@ impl AreaLights {
     /// The pass that shades: for [`ShadePass::prepare`].
     pub fn shade_pass(&self) -> &ShadePass {
         &self.shade
+    }
+
+    /// The medium of the next frame, where [`AreaLightsInfo::medium`] has one.
+    pub fn medium_mut(&mut self) -> Option<&mut MediumFrame> {
+        self.medium.as_mut().map(|(_, frame)| frame)
     }
 
     /// In which stages, and how, the host's images are used: what the host's barriers around
@@ -305,7 +328,8 @@ impl AreaLights {
         // SAFETY: the frame before at this place is done, so nothing uses what it has.
         unsafe {
             place.write_lights(context, allocator, &packed)?;
-            place.fit(context, allocator, (&self.shade, self.options), view.size)?;
+            let froxels = self.medium.as_ref().map(|(_, medium)| medium.froxels);
+            place.fit(context, allocator, (&self.shade, self.options), (view.size, froxels))?;
         }
         let resources = ShadeResources {
             table: self.table.0.resource(),
@@ -332,6 +356,18 @@ impl AreaLights {
             }
             _ => None,
         };
+        let medium = self.medium.as_ref().map(|(medium, given)| {
+            let position_from_clip = view.position_from_clip.unwrap_or(Mat4::NAN); // which is refused
+            let (size, camera, lights, seed) = (view.size, view.camera, frame.lights, self.seed);
+            let frame = MediumFrame { size, camera, position_from_clip, lights, seed, ..*given };
+            let set = place.sets[place.sets.len() - 1];
+            let seen = ShadeResources { radiance: g_buffer.radiance, ..resources };
+            // SAFETY: as above.
+            unsafe { medium.write_set(set, &seen, &place.medium_resources()) }?;
+            medium.prepare(lights)?;
+            Ok::<_, Error>((medium, set, frame))
+        });
+        let medium = medium.transpose()?;
 
         // Record what the frame reads, and the passes
         // SAFETY: the same contract.
@@ -346,11 +382,13 @@ impl AreaLights {
             place.record_layouts(context, command_buffer);
             self.shade.record(command_buffer, place.sets[0], &frame)?;
             if let Some((shadow, of_shadows)) = shadows {
-                let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
-                let (read, write) = (vk::AccessFlags::SHADER_READ, vk::AccessFlags::SHADER_WRITE);
-                context.record_barrier(command_buffer, (compute, write), (compute, read | write));
+                context.record_barrier(command_buffer, WRITTEN, USED);
                 let frame = ShadowFrame { shade: &frame, origin_shift: Vec3::ZERO };
                 shadow.record(command_buffer, Bound::Set(place.sets[1]), &of_shadows, &frame)?;
+            }
+            if let Some((medium, set, frame)) = medium {
+                context.record_barrier(command_buffer, WRITTEN, USED);
+                medium.record(command_buffer, set, &frame)?;
             }
         }
         Ok(())

@@ -131,7 +131,7 @@ pub(crate) struct Image {
     context: Context,
     pub(crate) raw: vk::Image,
     pub(crate) view: vk::ImageView,
-    pub(crate) extent: [u32; 2],
+    pub(crate) extent: [u32; 3],
     memory: Option<Memory>,
 }
 
@@ -151,13 +151,15 @@ impl Image {
         context: &Context,
         allocator: &SharedAllocator,
         format: vk::Format,
-        extent: [u32; 2],
+        extent: [u32; 3],
+        image_type: vk::ImageType,
     ) -> Result<Self, Error> {
         let device = &context.device;
+        let [width, height, depth] = extent;
         let info = vk::ImageCreateInfo::default()
-            .image_type(vk::ImageType::TYPE_2D)
+            .image_type(image_type)
             .format(format)
-            .extent(vk::Extent3D { width: extent[0], height: extent[1], depth: 1 })
+            .extent(vk::Extent3D { width, height, depth })
             .mip_levels(1)
             .array_layers(1)
             .samples(vk::SampleCountFlags::TYPE_1)
@@ -177,7 +179,7 @@ impl Image {
         image.memory = Some(allocator.keep(allocation));
         let info = vk::ImageViewCreateInfo::default()
             .image(raw)
-            .view_type(vk::ImageViewType::TYPE_2D)
+            .view_type(vk::ImageViewType::from_raw(image_type.as_raw())) // of one layer
             .format(format)
             .subresource_range(WHOLE);
         // SAFETY: as above.

@@ -1,12 +1,12 @@
 //! The object that owns all that shading needs: it draws what the recorder does.
 
-use arealight::plan::ShadowFilter;
+use arealight::plan::{MediumOptions, ShadowFilter};
 use arealight::{Blockers, TexturePart};
-use arealight_tests::floor::{SIZE, lamps};
+use arealight_tests::floor::{SIZE, lamps, pixels, position};
 use arealight_tests::pass::{image, read};
 use arealight_tests::prelude::*;
 use arealight_vk::gpu_allocator::{AllocationSizes, AllocatorDebugSettings, vulkan};
-use arealight_vk::{AreaLights, AreaLightsInfo, Error, TextureUpdate};
+use arealight_vk::{AreaLights, AreaLightsInfo, Error, MediumFrame, TextureUpdate};
 use std::sync::{Arc, Mutex};
 
 /// Does something with area lights on the engine's device, and sees that all memory was given back.
@@ -125,6 +125,53 @@ fn what_blocks_darkens_and_what_does_not_changes_nothing() {
             // The twin: there was something to darken
             assert!(free.iter().filter(|texel| texel.x > black.x + 0.01).count() > free.len() / 4);
         });
+    }
+}
+
+#[test]
+fn media_dim_what_is_shaded_and_scatter_light_that_nothing_blocks() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (floor, lights) = (Floor::new(&engine, &[lamp()]), [lamp()]);
+    let view = ShadeFrame { position_from_clip: Some(glam::Mat4::IDENTITY), ..floor.frame() };
+    let medium = MediumFrame {
+        froxels: [4, 3, 64],
+        size: [0; 2],
+        camera: Vec3::ZERO,
+        position_from_clip: glam::Mat4::ZERO,
+        lights: LightSummary::default(),
+        scattering: Vec3::ZERO,
+        extinction: 0.2,
+        anisotropy: 0.5,
+        nearest: 1.0,
+        farthest: 16.0,
+        seed: 0,
+    };
+    for shadow_rays in [0, 1] {
+        let options = ShadeOptions { shadow_rays, ..ShadeOptions::default() };
+        let rays = MediumOptions { shadow_rays: shadow_rays > 0, ..MediumOptions::default() };
+        let clear = AreaLightsInfo { options, ..AreaLightsInfo::default() };
+        let mut pictures = vec![];
+        with_area_lights(&engine, &clear, |area_lights| {
+            pictures.push(picture(area_lights, 0, (&floor, &lights), &view));
+        });
+        with_area_lights(&engine, &AreaLightsInfo { medium: Some((rays, medium)), ..clear }, |area_lights| {
+            pictures.push(picture(area_lights, 0, (&floor, &lights), &view));
+            *area_lights.medium_mut().unwrap() =
+                MediumFrame { scattering: Vec3::ONE, froxels: [5, 4, 32], ..medium };
+            pictures.push(picture(area_lights, 0, (&floor, &lights), &view));
+        });
+        for (pixel, clear) in pixels().zip(&pictures[0]) {
+            let away = position(pixel).distance(view.camera);
+            let [_, dim, bright] =
+                [0, 1, 2].map(|index| pictures[index][(pixel[1] * SIZE[0] + pixel[0]) as usize]);
+            let expected = clear.truncate() * (-0.2 * away).exp();
+            // Froxels have 11 bits
+            assert!(
+                (dim.truncate() - expected).abs().cmple(2e-3 * expected + 1e-6).all(),
+                "{dim} {expected}"
+            );
+            assert!(bright.truncate().cmpgt(dim.truncate()).all(), "{bright} {dim}");
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use super::{LEAST, mapped};
 use crate::context::Context;
 use crate::error::Error;
+use crate::medium::{MediumPass, MediumResources};
 use crate::memory::{Buffer, Image, SharedAllocator, WHOLE};
 use crate::resource::Resource;
 use crate::shade::{ShadePass, ShadeResources};
@@ -16,7 +17,7 @@ use std::sync::Arc;
 
 /// What a frame has that others in flight must not touch.
 pub(super) struct Place {
-    /// Of the shade pass, and of the shadow pass where there is one.
+    /// Of the shade pass, and of the passes of shadows and a medium where there are.
     pub(super) sets: Vec<vk::DescriptorSet>,
     /// What the place's frame copies the table from.
     pub(super) staging: Option<Arc<Buffer>>,
@@ -25,6 +26,7 @@ pub(super) struct Place {
     lights: [Buffer; 3],
     tile_lists: Option<Buffer>,
     shadows: Option<Shadows>,
+    froxels: Option<Image>,
 }
 
 /// What shadows need of a frame's size.
@@ -46,7 +48,15 @@ impl Place {
         // SAFETY: the same contract.
         let empty = || unsafe { mapped(context, allocator, &[]) };
         let lights = [empty()?, empty()?, empty()?];
-        Ok(Self { sets, staging: None, blockers: None, lights, tile_lists: None, shadows: None })
+        Ok(Self {
+            sets,
+            staging: None,
+            blockers: None,
+            lights,
+            tile_lists: None,
+            shadows: None,
+            froxels: None,
+        })
     }
 
     /// Writes the lights, to larger buffers where they need them.
@@ -84,7 +94,7 @@ impl Place {
         context: &Context,
         allocator: &SharedAllocator,
         (shade, options): (&ShadePass, ShadeOptions),
-        size: [u32; 2],
+        (size, froxels): ([u32; 2], Option<[u32; 3]>),
     ) -> Result<(), Error> {
         let on_device = |usage, size: vk::DeviceSize| {
             let what = (size.max(LEAST), MemoryLocation::GpuOnly);
@@ -96,7 +106,17 @@ impl Place {
         {
             self.tile_lists = Some(on_device(needed.usage, needed.size)?);
         }
-        let is_other = self.shadows.as_ref().is_none_or(|shadows| shadows.shadow.extent != size);
+        if let Some(froxels) = froxels
+            && self.froxels.as_ref().is_none_or(|image| image.extent != froxels)
+        {
+            let extent = froxels.map(|count| count.max(1));
+            // SAFETY: as above.
+            let image =
+                unsafe { Image::new(context, allocator, MediumPass::FORMAT, extent, vk::ImageType::TYPE_3D) };
+            self.froxels = Some(image?);
+        }
+        let extent = [size[0], size[1], 1].map(|side| side.max(1));
+        let is_other = self.shadows.as_ref().is_none_or(|shadows| shadows.shadow.extent != extent);
         if options.shadow_rays > 0 && is_other {
             let format = match options.format {
                 RadianceFormat::Rgba32Float => vk::Format::R32G32B32A32_SFLOAT,
@@ -104,7 +124,7 @@ impl Place {
             };
             // SAFETY: as above.
             let image =
-                |format| unsafe { Image::new(context, allocator, format, size.map(|side| side.max(1))) };
+                |format| unsafe { Image::new(context, allocator, format, extent, vk::ImageType::TYPE_2D) };
             self.shadows = Some(Shadows {
                 picks: on_device(vk::BufferUsageFlags::STORAGE_BUFFER, shade.picks_size(size))?,
                 shadow: image(ShadowPass::SHADOW_FORMAT)?,
@@ -148,12 +168,22 @@ impl Place {
         }
     }
 
+    /// Those of a medium's pass.
+    pub(super) fn medium_resources(&self) -> MediumResources {
+        let blockers = self.blockers.as_ref().map(|buffers| {
+            let [nodes, triangles] = buffers.each_ref().map(|buffer| Resource::buffer(buffer.raw));
+            BlockerResources { nodes, triangles }
+        });
+        let froxels =
+            self.froxels.as_ref().map_or_else(Resource::default, |image| Resource::stored(image.view));
+        MediumResources { froxels, medium: None, blockers }
+    }
+
     /// Records that the place's images get their layout: what they held is of no frame to come.
     ///
     /// # Safety
     /// The command buffer is recording, outside a render pass.
     pub(super) unsafe fn record_layouts(&self, context: &Context, command_buffer: vk::CommandBuffer) {
-        let Some(shadows) = &self.shadows else { return };
         let barrier = |image: &Image| {
             vk::ImageMemoryBarrier::default()
                 .image(image.raw)
@@ -164,8 +194,11 @@ impl Place {
                 .new_layout(vk::ImageLayout::GENERAL)
                 .dst_access_mask(vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE)
         };
-        let images: Vec<_> =
-            std::iter::once(&shadows.shadow).chain(&shadows.unshadowed).map(barrier).collect();
+        let of_shadows = self.shadows.iter().flat_map(|of| std::iter::once(&of.shadow).chain(&of.unshadowed));
+        let images: Vec<_> = of_shadows.chain(&self.froxels).map(barrier).collect();
+        if images.is_empty() {
+            return;
+        }
         // SAFETY: the same contract; the images are the place's.
         unsafe {
             context.device.cmd_pipeline_barrier(
