@@ -29,7 +29,7 @@ pub use eval_medium::MediumPoint;
 pub use g_buffer::{GBuffer, texel_of};
 pub use kept::Kept;
 pub use passes::{BoundSet, ListPass, Passes, SharedPass};
-pub use render::fog::Fog;
+pub use render::fog::{Fog, FogView};
 pub use render::shadowed::ShadowedView;
 pub use render::tiled::{TileCounts, TileLists, TiledView};
 pub use render::{Reference, SceneRenderer};

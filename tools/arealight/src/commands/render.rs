@@ -13,7 +13,6 @@ use crate::shadows::Shadows;
 use arealight::Effects;
 use arealight_engine::Fog;
 use arealight_scene::{Camera, Scene, SceneFog};
-use glam::Vec3;
 use serde_json::json;
 use shading::{Outcome, render};
 use std::collections::BTreeMap;
@@ -108,12 +107,10 @@ struct FogArguments {
 impl FogArguments {
     /// The fog that is asked for, else the scene's: it ends beyond the scene.
     fn of(&self, scene: &Scene, camera: &Camera) -> Option<Fog> {
-        let asked = self.fog.map(|density| (density, self.anisotropy, self.fog_albedo));
-        let of_scene = |fog: SceneFog| (fog.density as f32, fog.anisotropy as f32, fog.albedo as f32);
-        let (density, anisotropy, albedo) = asked.or(scene.fog.map(of_scene)).filter(|fog| fog.0 > 0.0)?;
-        let corners = scene.triangles.iter().flat_map(|triangle| triangle.positions);
-        let farthest = corners.map(|corner| corner.distance(camera.position)).fold(1e-3, f64::max) as f32;
-        Some(Fog { density, albedo: Vec3::splat(albedo), anisotropy, farthest })
+        let (anisotropy, albedo) = (self.anisotropy.into(), self.fog_albedo.into());
+        let asked = self.fog.map(|density| SceneFog { density: density.into(), anisotropy, albedo });
+        let fog = asked.or(scene.fog).filter(|fog| fog.density > 0.0)?;
+        Some(Fog::of_scene(scene, camera, fog))
     }
 }
 

@@ -167,6 +167,7 @@ fn summary(state: &State, shown: &Shown<'_>, seconds: f64) -> Value {
             Mode::Error => "error",
         },
         "shadows": state.has_shadows(),
+        "fog": state.fog().map(|fog| fog.density),
         "effects": shown.effects.names(),
         "gpu_seconds": { "visibility": visibility, "shading": shading },
         "truth_samples": shown.truth.map_or(0, |(samples, _)| samples),

@@ -107,7 +107,8 @@ fn status(state: &State, shown: &Shown<'_>) -> Vec<String> {
     let shadows = if state.has_shadows() { "with shadows" } else { "without shadows" };
     let roughness =
         state.roughness.map_or_else(String::new, |roughness| format!(", roughness {roughness:.2}"));
-    let mut lines = vec![format!("{level}, {shadows}{roughness}, exposure {:+.1}", state.exposure)];
+    let fog = state.fog().map_or_else(String::new, |fog| format!(", fog {:.3}", fog.density));
+    let mut lines = vec![format!("{level}, {shadows}{fog}{roughness}, exposure {:+.1}", state.exposure)];
     if shown.times.iter().any(Option::is_some) {
         let [visibility, shading] = shown.times.map(milliseconds);
         lines.push(format!("shading {shading}, visibility {visibility}"));

@@ -4,7 +4,7 @@ use super::lamps;
 use super::orbit::Orbit;
 use crate::picture::MAX_STOPS;
 use arealight::Level;
-use arealight_scene::{Camera, Scene};
+use arealight_scene::{Camera, Scene, SceneFog};
 use glam::DVec3;
 use std::str::FromStr;
 
@@ -36,6 +36,9 @@ pub enum Key {
     Wipe,
     Error,
     Shadows,
+    Fog,
+    /// Of fog, by a factor.
+    Density(f64),
     Costs,
     Help,
     Save,
@@ -51,11 +54,12 @@ pub enum Key {
 }
 
 /// Keys as help and scripts name them, and what each does.
-pub const KEYS: [(&str, &str); 11] = [
+pub const KEYS: [(&str, &str); 12] = [
     ("1 to 5", "quality level"),
     ("w", "wipe: against the truth, against what engines ship, off"),
     ("e", "map of the error"),
     ("s", "shadows"),
+    ("f , .", "fog: off or on, thinner, denser"),
     ("c", "what each level and effect costs here"),
     ("[ ]", "roughness of every surface: smoother, rougher"),
     ("- +", "exposure"),
@@ -73,6 +77,9 @@ impl FromStr for Key {
             "w" => Self::Wipe,
             "e" => Self::Error,
             "s" => Self::Shadows,
+            "f" => Self::Fog,
+            "," => Self::Density(0.8),
+            "." => Self::Density(1.25),
             "c" => Self::Costs,
             "h" => Self::Help,
             "p" => Self::Save,
@@ -139,6 +146,10 @@ pub struct State {
     pub roughness: Option<f32>,
     /// Whether lights have shadows.
     pub shadows: bool,
+    /// Whether there is fog.
+    pub is_foggy: bool,
+    /// What it is where there is some.
+    pub fog: SceneFog,
     /// Whether keys are explained.
     pub help: bool,
     /// Whether the costs of levels and effects are to be shown.
@@ -155,6 +166,7 @@ pub struct State {
     has_yardstick: bool,
     home: Orbit,
     first_exposure: f32,
+    first_fog: SceneFog,
     pointer: [f64; 2],
     grip: Grip,
 }
@@ -166,6 +178,9 @@ impl State {
     /// As a scene is first shown.
     pub fn new(scene: &Scene, camera: &Camera, exposure: f32, has_yardstick: bool) -> Self {
         let home = Orbit::new(camera, scene.bounds);
+        // Half of the light goes through as much as the scene is long
+        let density = 0.7 / scene.bounds.diagonal().max(1e-3);
+        let fog = scene.fog.unwrap_or(SceneFog { density, anisotropy: 0.3, albedo: 1.0 });
         Self {
             orbit: home,
             level: Level::default(),
@@ -174,6 +189,8 @@ impl State {
             exposure,
             roughness: None,
             shadows: true,
+            is_foggy: scene.fog.is_some(),
+            fog,
             help: false,
             costs: false,
             picked: None,
@@ -183,6 +200,7 @@ impl State {
             has_yardstick,
             home,
             first_exposure: exposure,
+            first_fog: fog,
             pointer: [0.5; 2],
             grip: Grip::Nothing,
         }
@@ -191,7 +209,16 @@ impl State {
     /// Whether the picture has shadows. Yardsticks have none, and are wiped against a picture without; what
     /// they cost is the same on every level.
     pub fn has_shadows(&self) -> bool {
-        self.shadows && self.mode != Mode::Wipe(Partner::Yardstick) && !self.costs
+        self.shadows && self.is_complete()
+    }
+
+    /// The fog that the picture has, likewise.
+    pub fn fog(&self) -> Option<SceneFog> {
+        (self.is_foggy && self.is_complete()).then_some(self.fog)
+    }
+
+    fn is_complete(&self) -> bool {
+        self.mode != Mode::Wipe(Partner::Yardstick) && !self.costs
     }
 
     /// Whether the truth is shown, or what is far from it.
@@ -241,12 +268,15 @@ impl State {
                 self.mode = if self.mode == Mode::Error { Mode::Picture } else { Mode::Error };
             }
             Key::Shadows => self.shadows = !self.shadows,
+            Key::Fog => self.is_foggy = !self.is_foggy,
+            Key::Density(factor) => self.fog.density *= factor,
             Key::Costs => self.costs = !self.costs,
             Key::Help => self.help = !self.help,
             Key::Save => self.save = true,
             Key::Quit => self.quit = true,
             Key::Reset => {
                 (self.orbit, self.exposure, self.roughness) = (self.home, self.first_exposure, None);
+                self.fog = self.first_fog;
                 self.offsets.fill(DVec3::ZERO);
             }
             Key::Exposure(step) => self.exposure = (self.exposure + step).clamp(-MAX_STOPS, MAX_STOPS),
@@ -321,6 +351,10 @@ mod tests {
         assert_eq!(keys(&["+", "+", "-"]).exposure, 0.5);
         assert_eq!(keys(&["s"]).shadows, !keys(&[]).shadows);
         assert!(keys(&["h", "p", "escape"]) != keys(&[]));
+        let (clear, foggy) = (keys(&[]).fog(), keys(&["f"]).fog().unwrap());
+        assert_eq!((clear, keys(&["f", "w", "w"]).fog(), keys(&["f", "f"]).fog()), (None, None, None));
+        assert!(keys(&["f", ","]).fog().unwrap().density < foggy.density);
+        assert_eq!(keys(&["f", ".", "r"]).fog(), Some(foggy));
         assert_eq!(keys(&["]"]).roughness, Some(0.55));
         assert_eq!(keys(&["]", "left", "+", "r"]), keys(&[]));
         assert!("f13".parse::<Key>().unwrap_err().contains("'f13'") && "7".parse::<Key>().is_err());

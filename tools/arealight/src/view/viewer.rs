@@ -8,8 +8,8 @@ use arealight::plan::ShadeOptions;
 use arealight::{Effects, Level, Quality};
 use arealight_benches::ladder::{SHADE_YARDSTICK, yardstick_for};
 use arealight_benches::published;
-use arealight_engine::{Engine, EngineError, Reference, SceneRenderer, ShadowedView};
-use arealight_scene::{Scene, SceneBuffers};
+use arealight_engine::{Engine, EngineError, Fog, FogView, Reference, SceneRenderer, ShadowedView};
+use arealight_scene::{Scene, SceneBuffers, SceneFog};
 use arealight_vk::TableFormat;
 use glam::{DVec3, Vec3};
 use std::time::Duration;
@@ -53,6 +53,7 @@ struct Seen {
     placed: Placed,
     orbit: Orbit,
     shadows: bool,
+    fog: Option<SceneFog>,
 }
 
 /// A picture that was drawn.
@@ -86,6 +87,8 @@ pub struct Viewer<'a> {
     renderer: SceneRenderer<'a>,
     yardstick: Option<SceneRenderer<'a>>,
     shadowed: Option<(Level, Vec<ShadowedView>)>,
+    /// With shadows or without.
+    fogged: Option<(bool, FogView)>,
     size: [u32; 2],
     /// Of the renderers' cameras.
     looks: Option<Orbit>,
@@ -168,6 +171,7 @@ impl<'a> Viewer<'a> {
             renderer,
             yardstick,
             shadowed: None,
+            fogged: None,
             size,
             looks: None,
             is_unshaded: false,
@@ -206,7 +210,8 @@ impl<'a> Viewer<'a> {
     /// Draws what the state asks for, and adds `samples` a pixel to the truth where that is a part of it.
     pub fn draw(&mut self, state: &State, samples: u32) -> Result<Shown<'_>, EngineError> {
         self.place(state)?;
-        let seen = Seen { placed: self.placed.clone(), orbit: state.orbit, shadows: state.has_shadows() };
+        let (placed, shadows, fog) = (self.placed.clone(), state.has_shadows(), state.fog());
+        let seen = Seen { placed, orbit: state.orbit, shadows, fog };
         self.look(state.orbit)?;
         self.draw_ours(&seen, state.level)?;
         if state.mode == Mode::Wipe(Partner::Yardstick) {
@@ -224,7 +229,7 @@ impl<'a> Viewer<'a> {
     fn upload(&mut self) -> Result<(), EngineError> {
         (self.buffers, self.renderer, self.yardstick) = upload(self.engines, &self.scene, self.size)?;
         (self.shadowed, self.looks, self.ours, self.theirs) = (None, None, None, None);
-        (self.truth, self.tried) = (None, None);
+        (self.truth, self.tried, self.fogged) = (None, None, None);
         Ok(())
     }
 
@@ -295,8 +300,23 @@ impl<'a> Viewer<'a> {
         self.begin()?;
         let seed = means.samples();
         let time = if of.0.shadows { self.shade_with_shadows(of.1, seed)? } else { self.shade(of.1)? };
+        if let Some(fog) = self.fog(&of.0) {
+            let [columns, rows] = self.size.map(|side| side.div_ceil(8));
+            if self.fogged.as_ref().is_none_or(|(shadows, _)| *shadows != of.0.shadows) {
+                let (froxels, how) = ([columns, rows, 64], (1, of.0.shadows));
+                self.fogged = Some((of.0.shadows, self.renderer.fog_view(&self.buffers, froxels, how)?));
+            }
+            if let Some((_, view)) = &self.fogged {
+                self.renderer.add_fog(view, &fog, seed)?;
+            }
+        }
         means.add(&radiance(&mut self.renderer)?, 1);
         Ok(Drawn { of, radiance: means.mean(), means, time })
+    }
+
+    /// The fog of what is seen.
+    fn fog(&self, seen: &Seen) -> Option<Fog> {
+        seen.fog.map(|fog| Fog::of_scene(&self.scene, &seen.orbit.camera(), fog))
     }
 
     fn shade(&mut self, level: Level) -> Result<Option<Duration>, EngineError> {
@@ -350,6 +370,9 @@ impl<'a> Viewer<'a> {
             let reference = Reference { samples, seed: truth.samples(), shadows: seen.shadows, coupled };
             self.begin()?;
             self.renderer.reference(reference, |_| {})?;
+            if let Some(fog) = self.fog(seen) {
+                self.renderer.fog_reference(&fog, samples, (seen.shadows, truth.samples()), |_| {})?;
+            }
             truth.add(&radiance(&mut self.renderer)?, samples);
         }
         self.truth = Some((seen.clone(), truth));

@@ -132,6 +132,21 @@ fn shadows_and_scenes_without_a_yardstick_are_shown_too() {
 }
 
 #[test]
+fn fog_is_the_scenes_until_it_is_thinner_or_off() {
+    if arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_none() {
+        return;
+    }
+    let recording = record("slats.glb", "0 key s\n0.25 key ,\n0.5 key r\n0.75 key w\n1.25 key f\n");
+    let fog: Vec<_> = recording.frames.iter().map(|frame| frame["fog"].as_f64()).collect();
+    assert_eq!(fog, [Some(0.15), Some(0.12), Some(0.15), Some(0.15), Some(0.15), None]);
+    // The truth has the same fog
+    let [error, noise] = ["error", "truth_noise"].map(|field| recording.frames[4][field].as_f64());
+    assert!(noise.is_some() && error.is_none_or(|error| error < 0.1), "{error:?}, {noise:?}");
+    let [thinner, same, off] = [1, 2, 5].map(|frame| recording.difference(0, frame));
+    assert!(thinner > 0.1 && same == 0.0 && off > 0.5, "{thinner} {same} {off}");
+}
+
+#[test]
 fn wrong_scripts_and_places_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |arguments: &[&str], code: i32, words: &str| {

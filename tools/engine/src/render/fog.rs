@@ -1,10 +1,10 @@
 //! A medium before what was shaded, by froxels and by Monte Carlo.
 
 use super::shadowed::blockers;
-use crate::host::{ImageDescription, Usage};
+use crate::host::{Buffer, DescriptorPool, Image, ImageDescription, Usage};
 use crate::{EngineError, Kept, SceneRenderer};
 use arealight::plan::MediumOptions;
-use arealight_scene::SceneBuffers;
+use arealight_scene::{Camera, Scene, SceneBuffers, SceneFog};
 use arealight_tool_kernels::gpu::MediumReferenceConstants;
 use arealight_tool_kernels::kernels::{REFERENCE_MEDIUM, SHADOWS};
 use arealight_vk::{BlockerResources, MediumFrame, MediumPass, MediumPassInfo, MediumResources, Resource};
@@ -25,20 +25,38 @@ pub struct Fog {
     pub farthest: f32,
 }
 
+impl Fog {
+    /// That of a scene, which ends beyond all that a camera sees of it.
+    pub fn of_scene(scene: &Scene, camera: &Camera, fog: SceneFog) -> Self {
+        let corners = scene.triangles.iter().flat_map(|triangle| triangle.positions);
+        let farthest = corners.map(|corner| corner.distance(camera.position)).fold(1e-3, f64::max) as f32;
+        let albedo = Vec3::splat(fog.albedo as f32);
+        Self { density: fog.density as f32, albedo, anisotropy: fog.anisotropy as f32, farthest }
+    }
+}
+
+/// What fog takes before a view of a scene.
+pub struct FogView {
+    froxels: [u32; 3],
+    volume: Image,
+    set: vk::DescriptorSet,
+    _pool: DescriptorPool,
+    _blockers: [Buffer; 2],
+    pass: Kept<MediumPass>,
+}
+
 impl SceneRenderer<'_> {
-    /// Puts a fog before the picture, by `froxels` across, down and away. Each froxel has so many samples,
-    /// with shadows each of them a ray for each light; everything blocks as a whole.
+    /// Makes what fog takes by `froxels` across, down and away. Each froxel has so many samples, with shadows
+    /// each of them a ray for each light; everything blocks as a whole.
     ///
     /// # Errors
     /// [`EngineError`] says why the device fails.
-    pub fn add_fog(
-        &mut self,
+    pub fn fog_view(
+        &self,
         scene: &SceneBuffers,
-        fog: &Fog,
         froxels: [u32; 3],
-        (samples, shadow_rays, seed): (u32, bool, u32),
-    ) -> Result<Option<Duration>, EngineError> {
-        self.ensure_visible()?;
+        (samples, shadow_rays): (u32, bool),
+    ) -> Result<FogView, EngineError> {
         let (engine, host) = (self.engine, self.engine.host());
         // doc: pass
         let options = MediumOptions { shadow_rays, samples, ..MediumOptions::default() };
@@ -68,6 +86,17 @@ impl SceneRenderer<'_> {
             pass.write_set(set, &self.shade_resources(arealight::Effects::empty()), &resources)?;
             set
         };
+        pass.prepare(self.lights)?;
+        Ok(FogView { froxels, volume, set, _pool: pool, _blockers: buffers, pass })
+    }
+
+    /// Puts a fog before the picture, with random numbers of `seed`.
+    ///
+    /// # Errors
+    /// [`EngineError`] says why the device fails.
+    pub fn add_fog(&mut self, view: &FogView, fog: &Fog, seed: u32) -> Result<Option<Duration>, EngineError> {
+        self.ensure_visible()?;
+        let FogView { froxels, ref volume, set, ref pass, .. } = *view;
         // doc: frame
         let frame = MediumFrame {
             froxels, // 160 x 90 x 64
@@ -83,8 +112,7 @@ impl SceneRenderer<'_> {
             seed,
         };
         // doc end
-        pass.prepare(self.lights)?;
-        host.try_submit_timed(|commands| {
+        self.engine.host().try_submit_timed(|commands| {
             volume.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
             // SAFETY: The commands are being recorded outside a render pass; submissions are waited for.

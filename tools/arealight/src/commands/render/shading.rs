@@ -173,7 +173,8 @@ fn add_fog(
         return renderer.fog_reference(fog, samples, (shadows, seed), |_| ());
     }
     let [columns, rows] = size.map(|side| side.div_ceil(8 * arguments.supersample));
-    renderer.add_fog(scene, fog, [columns, rows, 64], (arguments.fog.fog_samples, shadows, seed))
+    let view = renderer.fog_view(scene, [columns, rows, 64], (arguments.fog.fog_samples, shadows))?;
+    renderer.add_fog(&view, fog, seed)
 }
 
 /// The radiance of each sample.
