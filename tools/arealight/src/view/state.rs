@@ -269,7 +269,10 @@ impl State {
             }
             Key::Shadows => self.shadows = !self.shadows,
             Key::Fog => self.is_foggy = !self.is_foggy,
-            Key::Density(factor) => self.fog.density *= factor,
+            Key::Density(factor) => {
+                let first = self.first_fog.density;
+                self.fog.density = (self.fog.density * factor).clamp(1e-3 * first, 1e3 * first);
+            }
             Key::Costs => self.costs = !self.costs,
             Key::Help => self.help = !self.help,
             Key::Save => self.save = true,
