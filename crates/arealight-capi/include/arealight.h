@@ -974,8 +974,8 @@ enum ArealightResult arealight_light_reach(const struct ArealightLight *light,
                                            double density,
                                            struct ArealightReach *out);
 
-// Makes a medium's pass, after shade passes of `options`, of which position, radiance_format and quality
-// count; its rays meet ArealightMediumResources.blocker_nodes. `*out` is the host's to destroy.
+// Makes a medium's pass, after shade passes of `options`: their position, radiance_format and quality are
+// read. Its rays meet ArealightMediumResources.blocker_nodes. `*out` is the host's to destroy.
 //
 // The host sees to it:
 // Pointers are null or valid.

@@ -80,8 +80,8 @@ pub struct ArealightMediumPass {
     pass: MediumPass,
 }
 
-/// Makes a medium's pass, after shade passes of `options`, of which position, radiance_format and quality
-/// count; its rays meet ArealightMediumResources.blocker_nodes. `*out` is the host's to destroy.
+/// Makes a medium's pass, after shade passes of `options`: their position, radiance_format and quality are
+/// read. Its rays meet ArealightMediumResources.blocker_nodes. `*out` is the host's to destroy.
 ///
 /// # Safety
 /// Pointers are null or valid.

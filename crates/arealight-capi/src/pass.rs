@@ -256,7 +256,7 @@ pub(crate) fn given(range: ArealightBuffer) -> Option<Resource> {
     (range.buffer != 0).then(|| buffer(range))
 }
 
-/// A command buffer, and sets of which the host's may be 0.
+/// A command buffer and its sets. The host's may be 0.
 pub(crate) fn bound(
     command_buffer: *mut c_void,
     set: u64,

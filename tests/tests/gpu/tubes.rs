@@ -142,8 +142,8 @@ fn thin_and_far_tubes_keep_relative_precision() {
                 let whole = truth + transformed_form_factor(&mirror, &tube);
                 let thickness = tube.radius / distance(&tube);
                 // A line's own error is the thickness's square. What is no line is summed edge by edge: near
-                // by its error is absolute, of which the vertices' rounding leaves some 2^-27. In the lobe's
-                // space rounding costs a height 2^-23 of the distance, of which it is a hundredth or less
+                // by its error is absolute: some 2^-27 from the vertices' rounding. In the lobe's space
+                // rounding costs a height 2^-23 of the distance, and it is a hundredth of that or less
                 let summed = if is_thin(&tube, &lobe) { 0.0 } else { 1.5e-8 / whole };
                 let center = lobe * (0.5 * (tube.start + tube.end));
                 let low = (0.01 * center.length() / center.z.abs()).clamp(1.0, 2.0);

@@ -75,8 +75,8 @@ struct Points {
 impl Points {
     fn new(position: &Triples, normal: &Triples, view: &Triples) -> PyResult<Self> {
         let all = [("position", position), ("normal", normal), ("view", view)];
-        let of_rows = |(_, triples): &&(_, &Triples)| matches!(triples, Triples::Rows(_));
-        let count = all.iter().find(of_rows).map_or(1, |(_, triples)| triples.rows().len());
+        let of_rows = all.iter().find(|(_, triples)| matches!(triples, Triples::Rows(_)));
+        let count = of_rows.map_or(1, |(_, triples)| triples.rows().len());
         for (name, triples) in &all {
             let rows = triples.rows().len();
             if matches!(triples, Triples::Rows(_)) && rows != count {
@@ -90,7 +90,7 @@ impl Points {
             Ok(Seen { position: finite(at(position, index), "position")?, normal, view })
         };
         let seen = (0..count).map(seen).collect::<PyResult<_>>()?;
-        Ok(Self { seen, is_rows: all.iter().any(|named| of_rows(&named)) })
+        Ok(Self { seen, is_rows: of_rows.is_some() })
     }
 
     /// What was found at each, as Python gets it: three numbers, or an array of rows (a list without numpy).

@@ -106,10 +106,9 @@ impl Place {
         {
             self.tile_lists = Some(on_device(needed.usage, needed.size)?);
         }
-        if let Some(froxels) = froxels
-            && self.froxels.as_ref().is_none_or(|image| image.extent != froxels)
+        if let Some(extent) = froxels.map(|froxels| froxels.map(|count| count.max(1)))
+            && self.froxels.as_ref().is_none_or(|image| image.extent != extent)
         {
-            let extent = froxels.map(|count| count.max(1));
             // SAFETY: as above.
             let image =
                 unsafe { Image::new(context, allocator, MediumPass::FORMAT, extent, vk::ImageType::TYPE_3D) };
@@ -156,7 +155,6 @@ impl Place {
         g_buffer: &ShadeResources,
         blockers: &Arc<[Buffer; 2]>,
     ) -> ShadowResources {
-        let [nodes, triangles] = blockers.each_ref().map(|buffer| Resource::buffer(buffer.raw));
         self.blockers = Some(Arc::clone(blockers));
         let shadows = self.shadows.as_ref();
         let own = shadows.and_then(|shadows| shadows.unshadowed.as_ref());
@@ -164,19 +162,21 @@ impl Place {
             shadow: shadows.map_or_else(Resource::default, |shadows| Resource::stored(shadows.shadow.view)),
             radiance: own.map(|_| g_buffer.radiance),
             history: None,
-            blockers: Some(BlockerResources { nodes, triangles }),
+            blockers: self.blocker_resources(),
         }
+    }
+
+    fn blocker_resources(&self) -> Option<BlockerResources> {
+        let buffers = self.blockers.as_ref()?;
+        let [nodes, triangles] = buffers.each_ref().map(|buffer| Resource::buffer(buffer.raw));
+        Some(BlockerResources { nodes, triangles })
     }
 
     /// Those of a medium's pass.
     pub(super) fn medium_resources(&self) -> MediumResources {
-        let blockers = self.blockers.as_ref().map(|buffers| {
-            let [nodes, triangles] = buffers.each_ref().map(|buffer| Resource::buffer(buffer.raw));
-            BlockerResources { nodes, triangles }
-        });
         let froxels =
             self.froxels.as_ref().map_or_else(Resource::default, |image| Resource::stored(image.view));
-        MediumResources { froxels, medium: None, blockers }
+        MediumResources { froxels, medium: None, blockers: self.blocker_resources() }
     }
 
     /// Records that the place's images get their layout: what they held is of no frame to come.

@@ -220,7 +220,9 @@ const BATCH: usize = 1 << 12;
 
 /// One answer a case, in their order: the radiance, or why there is none.
 fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Failure> {
-    let table = arguments.quality.table()?;
+    // The truth reads no file of a table
+    let is_truth = arguments.on == Method::Truth;
+    let table = if is_truth { LightTable::ggx() } else { arguments.quality.table()? };
     let mut engine = gpu::LazyEngine::new(arguments.device.device.as_deref(), &table);
     let mut images = Images::beside(&arguments.cases, memory::most_of);
     let mut answers = Vec::with_capacity(cases.len());

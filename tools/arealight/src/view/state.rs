@@ -212,7 +212,7 @@ impl State {
         self.shadows && self.is_complete()
     }
 
-    /// The fog that the picture has, likewise.
+    /// The fog of the picture. Yardsticks and the measured costs are without.
     pub fn fog(&self) -> Option<SceneFog> {
         (self.is_foggy && self.is_complete()).then_some(self.fog)
     }
