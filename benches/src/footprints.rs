@@ -5,27 +5,19 @@ mod cost;
 mod report;
 
 use crate::textures::{self, TextureCost};
-use arealight::kernels::Kernel;
-use arealight::{Effects, Footprint, FormFactor, Light, LightTable, Quality};
+use arealight::{Effects, Footprint, FormFactor, Light, LightTable, Quality, TexturePart};
 use arealight_engine::host::Host;
 use arealight_engine::{Engine, EngineError, EvalPoint};
 use arealight_oracle::material::Surface;
-use arealight_oracle::shading::footprint::Filter;
 use arealight_oracle::shading::poses::{Bar, Errors, Family, Pose, Summary, poses};
 use arealight_oracle::shading::{RelativeLight, ltc_on};
 use arealight_oracle::texture::Texture;
-use arealight_tool_kernels::kernels::EVAL;
-use arealight_tool_kernels::plan;
 use arealight_vk::TableFormat;
 pub use cost::Cost;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::Arc;
-
-/// The eval kernel with the lookup of Heitz et al. 2016.
-pub static TEXTURED_ARTICLE: Kernel =
-    Kernel::of_pass("textured_article", include_bytes!("../spirv/textured_article.spv"), &[&EVAL]);
 
 /// A way to look up a light's texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,46 +26,32 @@ pub struct Method {
     pub name: &'static str,
     /// What it does, in a few words.
     pub description: &'static str,
-    /// The same in the oracle.
-    pub filter: Filter,
+    /// What it is.
+    pub footprint: Footprint,
 }
 
 /// Every method, the yardstick first.
-pub static METHODS: [Method; 4] = [
+pub static METHODS: [Method; 2] = [
     Method {
-        name: "article",
-        description: "the filter of Heitz et al. 2016: one fetch at the foot of the perpendicular",
-        filter: Filter::Article,
+        name: "mips",
+        description: "one fetch of the image's mips at the foot of the perpendicular (Heitz et al. 2016)",
+        footprint: Footprint::Mips,
     },
-    level("round", "one fetch where the light comes from", Footprint::Round),
-    level("ellipse", "four fetches along the footprint's longer axis", Footprint::Ellipse),
-    level("split", "4 x 4 parts of the light, two fetches each", Footprint::Split),
+    Method {
+        name: "kernel",
+        description: "three fetches of the image filtered by the lobe's own kernel",
+        footprint: Footprint::Kernel,
+    },
 ];
 
-const fn level(name: &'static str, description: &'static str, footprint: Footprint) -> Method {
-    Method { name, description, filter: Filter::Level(footprint) }
-}
-
 impl Method {
-    /// The kernel, and the values of its constants.
-    fn kernel(&self, effects: Effects, quality: Quality) -> (&'static Kernel, Vec<(u32, u32)>) {
-        let footprint = match self.filter {
-            Filter::Article => Footprint::default(),
-            Filter::Level(footprint) => footprint,
-        };
-        let dispatch = plan::eval(effects, Quality { footprint, ..quality }, 0);
-        let kernel = if self.filter == Filter::Article { &TEXTURED_ARTICLE } else { dispatch.kernel };
-        (kernel, dispatch.specialization)
-    }
-
     fn answers(
         &self,
         engine: &Engine,
         quality: Quality,
         points: &[EvalPoint],
     ) -> Result<Vec<DVec3>, EngineError> {
-        let (kernel, specialization) = self.kernel(EFFECTS, quality);
-        let answers = engine.eval_by(kernel, &specialization, &points.iter().collect::<Vec<_>>())?;
+        let answers = engine.eval(points, Quality { footprint: self.footprint, ..quality })?;
         Ok(answers.into_iter().map(Vec3::as_dvec3).collect())
     }
 }
@@ -83,6 +61,8 @@ const EFFECTS: Effects = Effects::DIFFUSE.union(Effects::GLOSSY).union(Effects::
 
 /// Texels of the pictures, and of the pyramid, to a side.
 const SIDE: u32 = 256;
+
+const PICTURES: u32 = 5;
 
 /// The layers of the pictures that the bars are for: [`pictures`] makes them.
 const JUDGED: std::ops::Range<u32> = 0..3;
@@ -245,7 +225,7 @@ pub fn run(
                         errors.add(*found / *albedo, *expected / *albedo);
                     }
                 }
-                let bar = if name == SPOT_PICTURE { None } else { Bar::of(method.filter, family) };
+                let bar = if name == SPOT_PICTURE { None } else { Bar::of(method.footprint, family) };
                 rows.push(Row { pictures: name, family, method: method.name, errors: errors.summary(), bar });
             }
             if name == JUDGED_PICTURES {
@@ -258,6 +238,10 @@ pub fn run(
     let far = far(&engine, &truth)?;
     let (mut costs, mut updates) = (Vec::new(), Vec::new());
     if options.rounds > 0 {
+        // Of one aspect: as few images as a scene has
+        for texture in judged_points.iter_mut().filter_map(|point| point.light.texture.as_mut()) {
+            texture.layer %= PICTURES;
+        }
         costs = cost::measure(&engine, &judged_points, options.rounds)?;
         for side in [512, 1024] {
             updates.push(textures::measure(host, side, options.rounds)?);
@@ -270,11 +254,12 @@ pub fn run(
 /// An engine that has the pictures for layers.
 fn engine(host: &Host, table: &LightTable, textures: &[Arc<Texture>]) -> Result<Engine, EngineError> {
     let mut engine = Engine::new(host.clone(), table, TableFormat::Rgba32Float)?;
-    crate::pictures::load(&mut engine, textures, |_| 1.0)?;
+    crate::pictures::load_by_aspect(&mut engine, textures, TexturePart::default())?;
     Ok(engine)
 }
 
-fn point(pose: &Pose, layer: u32) -> EvalPoint {
+fn point(pose: &Pose, picture: u32) -> EvalPoint {
+    let layer = crate::pictures::layer_of(picture, PICTURES, pose.aspect());
     EvalPoint {
         surface: pose.surface,
         position: DVec3::ZERO,
@@ -287,7 +272,11 @@ fn point(pose: &Pose, layer: u32) -> EvalPoint {
 /// The integral of image times the table's lobe.
 fn truth(quality: Quality, table: &LightTable, pictures: &[Arc<Texture>], point: &EvalPoint) -> DVec3 {
     let layer = point.light.texture.as_ref().map_or(0, |texture| texture.layer);
-    let light = RelativeLight::textured(&point.light, point.position, Arc::clone(&pictures[layer as usize]));
+    let light = RelativeLight::textured(
+        &point.light,
+        point.position,
+        Arc::clone(&pictures[(layer % PICTURES) as usize]),
+    );
     light.map_or(DVec3::NAN, |light| ltc_on(quality, table, &point.surface, point.normal, point.view, &light))
 }
 

@@ -24,7 +24,7 @@ pub use text::{READS, error_cells, number, percent};
 pub use timing::{Spread, Time};
 
 use crate::textures::is_software;
-use arealight::{Effects, LightTable, Quality};
+use arealight::{Effects, LightTable, Quality, TexturePart};
 use arealight_engine::host::Host;
 use arealight_engine::{Engine, EngineError, GBuffer};
 use arealight_oracle::texture::Texture;
@@ -341,7 +341,9 @@ fn patches(engine: &Engine, workload: &Workload, seed: u64) -> Result<GBuffer, E
 /// An engine whose light textures are the pictures.
 fn engine(host: &Host, table: &LightTable, textures: &[Arc<Texture>]) -> Result<Engine, EngineError> {
     let mut engine = Engine::new(host.clone(), table, TableFormat::default())?;
-    crate::pictures::load(&mut engine, textures, |_| 1.0)?;
+    // A layer a light
+    let lights = points::lights(points::LightKind::Textured);
+    crate::pictures::load(&mut engine, textures, |layer| TexturePart::default().shown_by(&lights[layer]))?;
     Ok(engine)
 }
 

@@ -16,7 +16,7 @@ const int OUTPUT_HALF = 4;
 // infinite texel would spread over the picture in later filters.
 vec4 output_texel(vec3 radiance, bool hit, float coverage) {
     if ((OUTPUT & OUTPUT_HALF) != 0) {
-        radiance = round_to_half(min(radiance, vec3(LARGEST_HALF)));
+        radiance = round_to_half(vec4(min(radiance, vec3(LARGEST_HALF)), 0.0)).rgb;
     }
     return hit ? vec4(radiance, coverage) : vec4(0.0);
 }

@@ -22,7 +22,7 @@ ArealightQuadLight load_quad(ArealightGpuLight record) {
 // The place of a light's image; without one, of none.
 ArealightImage load_image(ArealightGpuLight record) {
     ArealightImage image = ArealightImage(AREALIGHT_NO_IMAGE, vec3(0.0), vec3(0.0), vec3(0.0), vec2(0.0),
-                                          vec2(0.0));
+                                          vec2(0.0), 1.0);
     if (AREALIGHT_HAS_TEXTURED_POLYGONS && record.texture_layer != NO_LIGHT_TEXTURE) {
         uint row = record.first_vertex + record.vertex_count;
         vec4 corner = light_vertices[row];
@@ -30,7 +30,7 @@ ArealightImage load_image(ArealightGpuLight record) {
         vec4 axis_v = light_vertices[row + 2u];
         image = ArealightImage(record.texture_layer, corner.xyz, axis_u.xyz, axis_v.xyz,
                                vec2(corner.w, axis_u.w),
-                               vec2(axis_v.w, light_vertices[row + 3u].x));
+                               vec2(axis_v.w, light_vertices[row + 3u].x), light_vertices[row + 3u].y);
     }
     return image;
 }
@@ -38,8 +38,7 @@ ArealightImage load_image(ArealightGpuLight record) {
 ArealightPolygonLight load_polygon(ArealightGpuLight record) {
     return ArealightPolygonLight(record.radiance, record.center, record.normal, record.first_vertex,
                                  record.vertex_count,
-                                 (record.flags & LIGHT_TWO_SIDED) != 0u, load_image(record),
-                                 (record.flags & LIGHT_QUAD) != 0u);
+                                 (record.flags & LIGHT_TWO_SIDED) != 0u, load_image(record));
 }
 
 #if AREALIGHT_SHAPED

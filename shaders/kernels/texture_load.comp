@@ -8,6 +8,7 @@
 layout(local_size_x = 32, local_size_y = 2) in;
 
 #include "half.glsl"
+#include "image_layers.glsl"
 #include "srgb.glsl"
 
 layout(set = 0, binding = 0) uniform texture2D source;
@@ -96,5 +97,5 @@ void main() {
     }
     vec3 color = (LOAD_STEPS & STEP_RESAMPLING) != 0u
         ? resampled(texel) : fetch_linear(wrap(constants.first_texel + texel));
-    imageStore(out_level, ivec3(texel, constants.layer), vec4(round_to_half(color), 1.0));
+    imageStore(out_level, ivec3(texel, IMAGE_LAYERS * constants.layer), round_to_half(vec4(color, 1.0)));
 }

@@ -11,7 +11,7 @@ pub use crate::{
 pub use arealight::plan::{GBufferLayout, Output, ShadeOptions, TileOptions};
 pub use arealight::{
     Effects, Footprint, FormFactor, Horizon, Light, LightShape, LightSummary, LightTable, LightTexture,
-    Lobes, PackedLights, Plane, Planes, PyramidSize, Quality, SpecularLobes, TubeEnds,
+    Lobes, PackedLights, Plane, Planes, PyramidSize, Quality, SpecularLobes, TexturePart, TubeEnds,
 };
 pub use arealight_engine::host::{Image, ImageDescription, Usage};
 pub use arealight_engine::{EvalPoint, SceneRenderer};

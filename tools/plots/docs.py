@@ -234,7 +234,25 @@ def edge_integral(_):
     return svg(made, "An edge: its arc, and the vector that it adds")
 
 
-DRAWINGS = (cosine_to_lobe, polygon_to_cosine_space, clip, edge_integral, table_axes)
+def kernel(_):
+    """What a place of a light's plane counts in cosine space, and the Gaussian of the same height."""
+    made, (left, right) = figure(760, 300, columns=2)
+    x = np.linspace(0, 4, 400)
+    true, gaussian = 1 / (1 + x * x) ** 2, np.exp(-x * x)
+    within = x * x / (1 + x * x), 1 - gaussian
+    for axes, curves, says in ((left, (true, gaussian), "how much a place counts, the foot = 1"),
+                               (right, within, "how much is within the distance")):
+        for curve, colour, name in zip(curves, (OURS, THEIRS), ("K", "the Gaussian")):
+            axes.plot(x, curve, color=colour, linewidth=1.8, label=name)
+        axes.set_title(says, loc="left")
+        axes.set_xlabel("distance from the foot, in heights")
+        axes.set_xlim(0, 4)
+        axes.set_ylim(0, 1.03)
+    left.legend(frameon=False)
+    return svg(made, "The kernel of a light's plane and the Gaussian of the same height")
+
+
+DRAWINGS = (cosine_to_lobe, polygon_to_cosine_space, clip, edge_integral, table_axes, kernel)
 
 
 def module():

@@ -373,8 +373,8 @@ def entries(found):
 
 
 def pyramid(found):
-    """All levels of a light's texture at one size, in order."""
-    levels = found["levels"]
+    """A light's image and the finer levels of what is seen of it, at one size, in order."""
+    levels = found["levels"][:9]
     rows = -(-len(levels) // 3)
     height = int(320 * found["size"][1] / found["size"][0]) + 50
     made, cells = figure(1050, 60 + rows * height, columns=3, rows=rows, squeeze=False)
@@ -386,8 +386,9 @@ def pyramid(found):
             width, height = level["size"]
             pixels = np.frombuffer(base64.b64decode(level["srgb"]), np.uint8).reshape(height, width, 3)
             axes.imshow(pixels, interpolation="antialiased" if index == 0 else "nearest")
-            blur = f"blur {level['blur']:.1f} texels, {100 * level['share']:.2f} %" if index else "sharp"
-            axes.set_title(f"level {index}: {width} x {height}\n{blur}", loc="left")
+            title = f"level {index - 1}: {width} x {height}\nseen from {level['height']:.2f}" if index \
+                else f"the image: {width} x {height}\n"
+            axes.set_title(title, loc="left")
     return png(made)
 
 

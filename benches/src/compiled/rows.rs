@@ -177,7 +177,7 @@ fn other_rows() -> Vec<Row> {
     let difference = Quality { form_factor: FormFactor::Difference, ..exact };
     let both = Quality { horizon: Horizon::Both, ..exact };
     let half_vectors = Quality { specular_lobes: SpecularLobes::HalfVectors, ..exact };
-    let footprint = |footprint| Quality { footprint, ..exact };
+    let mips = Quality { footprint: Footprint::Mips, ..exact };
     let (polygon, mesh) = (Effects::POLYGON, Effects::POLYGON | Effects::MESH);
     // A profile is what any flat light may have: those that have none don't pay for it
     let every_kind = (Effects::all() - Effects::SURFACES - Effects::PROFILE) | Effects::SPECULAR_INPUT;
@@ -188,13 +188,11 @@ fn other_rows() -> Vec<Row> {
         others("polygons", "both horizons", polygon, both),
         others("polygons", "difference", polygon, difference),
         others("polygons", "half vectors", polygon, half_vectors),
-        others("textured quads", "exact, round footprint", Effects::TEXTURED, exact),
-        others("textured quads", "exact, ellipse", Effects::TEXTURED, footprint(Footprint::Ellipse)),
-        others("textured quads", "exact, split", Effects::TEXTURED, footprint(Footprint::Split)),
+        others("textured quads", "exact", Effects::TEXTURED, exact),
+        others("textured quads", "exact, plain mips", Effects::TEXTURED, mips),
         others("meshes", "exact", mesh, exact),
         others("disks", "exact", disk, exact),
-        others("textured disks", "exact, round footprint", textured_disk, exact),
-        others("textured disks", "exact, ellipse", textured_disk, footprint(Footprint::Ellipse)),
+        others("textured disks", "exact", textured_disk, exact),
         others("spheres", "exact", Effects::SPHERE, exact),
         others("tubes", "exact", Effects::TUBE, exact),
         others("lights with profiles", "exact", Effects::PROFILE, exact),
@@ -242,9 +240,8 @@ fn other_rows() -> Vec<Row> {
         // Images of lights
         load("copied", 0),
         load("resampled, sRGB", 3),
-        blur("3 taps a side", plan::BLUR_RADII[0]),
-        blur("4 taps a side", plan::BLUR_RADII[1]),
-        blur("most taps", plan::BLUR_RADII[2]),
+        row(&kernels::TEXTURE_MIP, "images", "a mip", None, vec![]),
+        row(&kernels::TEXTURE_KERNEL, "images", "what lobes see", None, vec![]),
     ]
 }
 
@@ -360,10 +357,6 @@ fn tiles(lights: &'static str, level: &'static str, class: TileClass, kinds: Eff
 
 fn load(level: &'static str, steps: u32) -> Row {
     row(&kernels::TEXTURE_LOAD, "images", level, None, vec![(kernels::constant::LOAD_STEPS, steps)])
-}
-
-fn blur(level: &'static str, radius: u32) -> Row {
-    row(&kernels::TEXTURE_BLUR, "images", level, None, vec![(kernels::constant::RADIUS, radius)])
 }
 
 fn row(

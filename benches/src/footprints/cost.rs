@@ -4,12 +4,11 @@ use super::{EFFECTS, METHODS, untextured};
 use crate::ladder::Spread;
 use crate::ladder::timing::quantile;
 use crate::textures::{is_software, timed};
-use arealight::kernels::Kernel;
 use arealight::{Effects, PackedLights, Quality};
 use arealight_engine::host::Buffer;
 use arealight_engine::{BoundSet, Engine, EngineError, EvalPoint, SharedPass, gpu_case};
 use arealight_tool_kernels::gpu::EvalConstants;
-use arealight_tool_kernels::plan;
+use arealight_tool_kernels::plan::{self, Dispatch};
 use arealight_vk::Resource;
 use serde::Serialize;
 
@@ -22,8 +21,6 @@ pub struct Cost {
     pub nanoseconds: f64,
     /// The median over the rounds of the ratio to the light without a texture in the same round.
     pub to_untextured: f64,
-    /// The same to the first level.
-    pub to_round: f64,
 }
 
 /// The light without a texture.
@@ -45,7 +42,7 @@ impl Run {
     fn new(
         engine: &Engine,
         method: &'static str,
-        (kernel, specialization): (&'static Kernel, Vec<(u32, u32)>),
+        dispatch: &Dispatch,
         points: &[EvalPoint],
         count: usize,
     ) -> Result<Self, EngineError> {
@@ -67,7 +64,7 @@ impl Run {
         ];
         let [lights, vertices, cases, results] = [0, 1, 2, 3].map(|i| Resource::buffer(buffers[i].handle()));
         let resources = [engine.table(), lights, vertices, cases, results, engine.light_textures()];
-        let pass = engine.passes().pass(kernel, &specialization)?;
+        let pass = engine.passes().pass(dispatch.kernel, &dispatch.specialization)?;
         // SAFETY: This keeps the buffers until submissions are waited for; the caller keeps the engine.
         let set = unsafe { engine.passes().bind(&pass, &resources) }?;
         Ok(Self { method, pass, set, seconds: Vec::new(), _buffers: buffers })
@@ -94,11 +91,10 @@ pub(super) fn measure(
     let count = points.len() * least.div_ceil(points.len().max(1));
     let plain: Vec<EvalPoint> = points.iter().map(untextured).collect();
     let without = plan::eval(EFFECTS - Effects::TEXTURED, Quality::default(), 0);
-    let without = (without.kernel, without.specialization);
-    let mut runs = vec![Run::new(engine, UNTEXTURED, without, &plain, count)?];
+    let mut runs = vec![Run::new(engine, UNTEXTURED, &without, &plain, count)?];
     for method in &METHODS {
-        let kernel = method.kernel(EFFECTS, Quality::default());
-        runs.push(Run::new(engine, method.name, kernel, points, count)?);
+        let quality = Quality { footprint: method.footprint, ..Quality::default() };
+        runs.push(Run::new(engine, method.name, &plan::eval(EFFECTS, quality, 0), points, count)?);
     }
     for round in 0..=rounds {
         for run in &mut runs {
@@ -108,15 +104,10 @@ pub(super) fn measure(
             }
         }
     }
-    let ratio = |run: &Run, other: &str| {
-        let other = runs.iter().find(|run| run.method == other).unwrap_or(run);
-        Spread::of_ratios(&run.seconds, &other.seconds).median
-    };
     let cost = |run: &Run| Cost {
         method: run.method,
         nanoseconds: quantile(&run.seconds, 0.0) * 1e9 / count as f64,
-        to_untextured: ratio(run, UNTEXTURED),
-        to_round: ratio(run, "round"),
+        to_untextured: Spread::of_ratios(&run.seconds, &runs[0].seconds).median,
     };
     Ok(runs.iter().map(cost).collect())
 }

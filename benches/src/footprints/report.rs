@@ -55,12 +55,12 @@ impl Footprints {
         if self.costs.is_empty() {
             return table;
         }
-        table.heads.extend(["time, round = 1".to_owned(), "time, no texture = 1".to_owned()]);
-        let mut plain = vec![String::new(); table.heads.len() - 2];
+        table.heads.push("time, no texture = 1".to_owned());
+        let mut plain = vec![String::new(); table.heads.len() - 1];
         UNTEXTURED.clone_into(&mut plain[0]);
         table.rows.insert(0, plain);
         for (row, cost) in table.rows.iter_mut().zip(&self.costs) {
-            row.extend([format!("{:.2}", cost.to_round), format!("{:.2}", cost.to_untextured)]);
+            row.push(format!("{:.2}", cost.to_untextured));
         }
         table
     }

@@ -88,7 +88,7 @@ const EXACT: Quality = Quality {
     horizon: Horizon::Cosine,
     specular_lobes: SpecularLobes::One,
     lobes: Lobes::Table,
-    footprint: Footprint::Round,
+    footprint: Footprint::Kernel,
 };
 const DIFFERENCE: Quality = Quality { form_factor: FormFactor::Difference, ..EXACT };
 
@@ -166,9 +166,8 @@ pub fn workloads() -> Vec<Workload> {
             description: "textured quads",
             lights: LightKind::Textured,
             methods: vec![
-                textured("round", "one fetch", Footprint::Round),
-                textured("ellipse", "four fetches", Footprint::Ellipse),
-                textured("split", "4 x 4 parts", Footprint::Split),
+                textured("mips", "one fetch of plain mips", Footprint::Mips),
+                textured("kernel", "three fetches", Footprint::Kernel),
             ],
             share: 1.0,
         },

@@ -24,8 +24,7 @@ const HORIZONS: [(&str, Horizon); 2] = [("cosine", Horizon::Cosine), ("both", Ho
 const SPECULAR_LOBES: [(&str, SpecularLobes); 3] =
     [("one", SpecularLobes::One), ("two", SpecularLobes::Two), ("half_vectors", SpecularLobes::HalfVectors)];
 const LOBES: [(&str, Lobes); 2] = [("table", Lobes::Table), ("formula", Lobes::Formula)];
-const FOOTPRINTS: [(&str, Footprint); 3] =
-    [("round", Footprint::Round), ("ellipse", Footprint::Ellipse), ("split", Footprint::Split)];
+const FOOTPRINTS: [(&str, Footprint); 2] = [("kernel", Footprint::Kernel), ("mips", Footprint::Mips)];
 
 impl From<Quality> for LevelNames {
     fn from(quality: Quality) -> Self {

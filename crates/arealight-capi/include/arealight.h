@@ -133,14 +133,11 @@
 // Formulas instead, without a texture, at 1.2 to 1.35 times the error.
 #define AREALIGHT_LOBES_FORMULA 1
 
-// A light's image is looked up with one round fetch a lobe.
-#define AREALIGHT_FOOTPRINT_ROUND 0
+// A light's image is looked up with three fetches of what a lobe sees of it.
+#define AREALIGHT_FOOTPRINT_KERNEL 0
 
-// With four along the longer axis.
-#define AREALIGHT_FOOTPRINT_ELLIPSE 1
-
-// With four by four parts of the light, a form factor and two fetches each.
-#define AREALIGHT_FOOTPRINT_SPLIT 2
+// With one of its mips.
+#define AREALIGHT_FOOTPRINT_MIPS 1
 
 // Positions relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f). As
 // the next ones, an index into ArealightResources.planes.
@@ -809,7 +806,7 @@ typedef struct ArealightShadowFrame {
     uint32_t reserved;
 } ArealightShadowFrame;
 
-// The lights' images: a layer each, all of one size, with the levels that footprints are looked up in.
+// The lights' images: all of one size, each with its mips and with what lobes see of it.
 typedef struct ArealightTextureOptions {
     // Width and height in texels: a power of two from 64 to 4096. Images of other sizes are resampled.
     uint32_t side;
@@ -847,7 +844,7 @@ typedef struct ArealightTextureSetup {
     void *command_buffer;
 } ArealightTextureSetup;
 
-// An image that replaces a layer. Zero in `part_size` is the whole image, in `divisor` 1.
+// An image that replaces a layer. Zero in `part_size` is the whole image, in `divisor` and `aspect` 1.
 typedef struct ArealightTextureUpdate {
     // VkDescriptorSet that arealight_textures_write_source_set pointed at the image.
     uint64_t source_set;
@@ -871,6 +868,11 @@ typedef struct ArealightTextureUpdate {
     // What texels are divided by, where they are brighter or dimmer than half floats hold well (6e-5 to
     // 65,504); from 1e-30 to 1e30. The radiance of lights that show the layer is to be multiplied by it.
     float divisor;
+    // How many times as wide as high the light is that shows the layer, as texture coordinates run over it;
+    // from 1/1024 to 1024.
+    float aspect;
+    // 1: a disk or ellipse shows it; what is beyond the ellipse that touches its edges counts nothing.
+    uint32_t is_ellipse;
     // 0
     uint32_t reserved;
 } ArealightTextureUpdate;
@@ -1514,7 +1516,7 @@ AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, level_sets) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, level_set_count) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, reserved) == 28);
 AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, command_buffer) == 32);
-AREALIGHT_ASSERT(sizeof(ArealightTextureUpdate) == 72);
+AREALIGHT_ASSERT(sizeof(ArealightTextureUpdate) == 80);
 AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, source_set) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, part_low) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, part_size) == 24);
@@ -1525,7 +1527,9 @@ AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, decode_srgb) == 52);
 AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, wrap_u) == 56);
 AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, wrap_v) == 60);
 AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, divisor) == 64);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, reserved) == 68);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, aspect) == 68);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, is_ellipse) == 72);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, reserved) == 76);
 #undef AREALIGHT_ASSERT
 #endif
 

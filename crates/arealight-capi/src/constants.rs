@@ -76,12 +76,10 @@ pub const AREALIGHT_LOBES_TABLE: u32 = 0;
 /// Formulas instead, without a texture, at 1.2 to 1.35 times the error.
 pub const AREALIGHT_LOBES_FORMULA: u32 = 1;
 
-/// A light's image is looked up with one round fetch a lobe.
-pub const AREALIGHT_FOOTPRINT_ROUND: u32 = 0;
-/// With four along the longer axis.
-pub const AREALIGHT_FOOTPRINT_ELLIPSE: u32 = 1;
-/// With four by four parts of the light, a form factor and two fetches each.
-pub const AREALIGHT_FOOTPRINT_SPLIT: u32 = 2;
+/// A light's image is looked up with three fetches of what a lobe sees of it.
+pub const AREALIGHT_FOOTPRINT_KERNEL: u32 = 0;
+/// With one of its mips.
+pub const AREALIGHT_FOOTPRINT_MIPS: u32 = 1;
 
 /// Positions relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f). As
 /// the next ones, an index into ArealightResources.planes.

@@ -35,11 +35,7 @@ pub(crate) fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptio
         horizon: level(options.horizon, &[Horizon::Cosine, Horizon::Both], "options.horizon")?,
         specular_lobes: specular_lobes_of(options.specular_lobes, "options.specular_lobes")?,
         lobes: level(options.lobes, &[Lobes::Table, Lobes::Formula], "options.lobes")?,
-        footprint: level(
-            options.footprint,
-            &[Footprint::Round, Footprint::Ellipse, Footprint::Split],
-            "options.footprint",
-        )?,
+        footprint: level(options.footprint, &[Footprint::Kernel, Footprint::Mips], "options.footprint")?,
     };
     Ok(ShadeOptions {
         surfaces,
@@ -133,10 +129,10 @@ mod tests {
         let quality = made(options(
             c::AREALIGHT_FORM_FACTOR_DIFFERENCE,
             c::AREALIGHT_HORIZON_BOTH,
-            c::AREALIGHT_FOOTPRINT_SPLIT,
+            c::AREALIGHT_FOOTPRINT_MIPS,
         ));
         assert_eq!((quality.form_factor, quality.horizon), (FormFactor::Difference, Horizon::Both));
-        assert_eq!(quality.footprint, Footprint::Split);
+        assert_eq!(quality.footprint, Footprint::Mips);
         // Zero is the default of everything
         let zero = shade_options(&ArealightPassOptions::default()).unwrap();
         assert_eq!(zero, ShadeOptions::default());
@@ -155,7 +151,7 @@ mod tests {
             (ArealightPassOptions { horizon: 2, ..zero }, "options.horizon"),
             (ArealightPassOptions { specular_lobes: 3, ..zero }, "options.specular_lobes"),
             (ArealightPassOptions { lobes: 2, ..zero }, "options.lobes"),
-            (ArealightPassOptions { footprint: 3, ..zero }, "options.footprint"),
+            (ArealightPassOptions { footprint: 2, ..zero }, "options.footprint"),
             (ArealightPassOptions { position: 2, ..zero }, "options.position"),
             (ArealightPassOptions { output: u32::MAX, ..zero }, "options.output"),
             (ArealightPassOptions { g_buffer: 4, ..zero }, "options.g_buffer"),

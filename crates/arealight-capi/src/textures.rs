@@ -244,6 +244,8 @@ fn read_update(index: usize, update: &ArealightTextureUpdate) -> Result<TextureU
             size,
             wrap: [wrap(update.wrap_u, "wrap_u")?, wrap(update.wrap_v, "wrap_v")?],
             divisor: if update.divisor == 0.0 { 1.0 } else { update.divisor },
+            aspect: if update.aspect == 0.0 { 1.0 } else { update.aspect },
+            is_ellipse: read_flag(update.is_ellipse, &field("is_ellipse"))?,
         },
         decode_srgb: read_flag(update.decode_srgb, &field("decode_srgb"))?,
     })

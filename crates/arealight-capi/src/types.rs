@@ -464,7 +464,7 @@ pub struct ArealightBlockerArrays {
     pub triangles_size: u64,
 }
 
-/// The lights' images: a layer each, all of one size, with the levels that footprints are looked up in.
+/// The lights' images: all of one size, each with its mips and with what lobes see of it.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightTextureOptions {
@@ -508,7 +508,7 @@ pub struct ArealightTextureSetup {
     pub command_buffer: *mut c_void,
 }
 
-/// An image that replaces a layer. Zero in `part_size` is the whole image, in `divisor` 1.
+/// An image that replaces a layer. Zero in `part_size` is the whole image, in `divisor` and `aspect` 1.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightTextureUpdate {
@@ -534,6 +534,11 @@ pub struct ArealightTextureUpdate {
     /// What texels are divided by, where they are brighter or dimmer than half floats hold well (6e-5 to
     /// 65,504); from 1e-30 to 1e30. The radiance of lights that show the layer is to be multiplied by it.
     pub divisor: f32,
+    /// How many times as wide as high the light is that shows the layer, as texture coordinates run over it;
+    /// from 1/1024 to 1024.
+    pub aspect: f32,
+    /// 1: a disk or ellipse shows it; what is beyond the ellipse that touches its edges counts nothing.
+    pub is_ellipse: u32,
     /// 0
     pub reserved: u32,
 }

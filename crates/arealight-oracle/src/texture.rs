@@ -3,11 +3,9 @@
 //! Texture coordinates run from (0, 0), the outer corner of the first texel of the top row, to (1, 1).
 //! Between the texels' centres values are interpolated; beyond the outermost centres the edge is extended.
 
-mod blur;
 mod pictures;
 mod pyramid;
 
-pub use blur::Blur;
 pub use pyramid::Pyramid;
 
 use glam::{DVec2, DVec3};
@@ -175,13 +173,6 @@ impl Tent {
     fn apply(&self, texel: impl Fn(usize) -> DVec3) -> DVec3 {
         self.taps.iter().map(|&(index, weight)| texel(index) * weight).sum()
     }
-}
-
-/// The texel of `count` that stands at `index` where they are mirrored at both ends, without end.
-fn mirrored(index: isize, count: usize) -> isize {
-    let count = count.cast_signed();
-    let within = index.rem_euclid(2 * count);
-    within.min(2 * count - 1 - within)
 }
 
 #[cfg(test)]

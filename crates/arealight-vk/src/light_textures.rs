@@ -6,11 +6,10 @@ use crate::limits::{TEXTURE_FORMAT as FORMAT, TEXTURE_USAGE as USAGE};
 use crate::pass::ComputePass;
 use crate::resource::Resource;
 use arealight::gpu::TextureLoadConstants;
-use arealight::kernels::{TEXTURE_BLUR, TEXTURE_LOAD, constant};
-use arealight::pyramid::MOST_TAPS;
-use arealight::{PyramidSize, TexturePart, plan};
+use arealight::kernels::{TEXTURE_KERNEL, TEXTURE_LOAD, TEXTURE_MIP, constant};
+use arealight::pyramid::LAYERS;
+use arealight::{PyramidSize, TexturePart};
 use ash::vk;
-use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
 /// The one layout of the image, from [`LightTextures::record_clear`] on.
@@ -34,23 +33,13 @@ pub struct TextureUpdate {
     pub decode_srgb: bool,
 }
 
-/// Push constants of the kernel that makes a level from the one before.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-struct BlurConstants {
-    /// [`PyramidSize::weights`] of the level.
-    weights: [f32; MOST_TAPS],
-    /// The layer of the first group in z.
-    first_layer: u32,
-}
-
 /// The array image of the lights' textures with its pyramid, and the passes that fill it. The host gives it
 /// memory and descriptor sets:
 ///
 /// 1. [`LightTextures::new`], 2. allocate for [`LightTextures::memory_requirements`], 3.
 ///    [`LightTextures::bind_memory`],
-/// 4. allocate a set for each level but the first ([`LightTextures::level_set_layout`]), once, and one for
-///    each image ([`LightTextures::source_set_layout`]),
+/// 4. allocate [`LightTextures::level_sets`] sets of [`LightTextures::level_set_layout`], once, and one for each
+///    image ([`LightTextures::source_set_layout`]),
 /// 5. [`LightTextures::write_level_sets`], 6. [`LightTextures::record_clear`].
 ///
 /// From then on [`LightTextures::resource`] can be shaded with, and [`LightTextures::record_update`] replaces
@@ -71,8 +60,9 @@ pub struct LightTextures {
     layers: u32,
     /// By what is needed. Their layouts are alike, so that a set made for one is for all.
     load: [ComputePass; 4],
-    /// By [`plan::BLUR_RADII`]. Likewise.
-    blur: [ComputePass; 3],
+    mip: ComputePass,
+    /// Its sets are laid out as those of `mip`.
+    kernel: ComputePass,
     image: vk::Image,
     view: vk::ImageView,
     level_views: Vec<vk::ImageView>,
@@ -97,15 +87,16 @@ impl LightTextures {
         };
         let load = |steps| pass(&TEXTURE_LOAD, (constant::LOAD_STEPS, steps));
         let load = [load(0)?, load(1)?, load(2)?, load(3)?];
-        let blur = |variant: usize| pass(&TEXTURE_BLUR, (constant::RADIUS, plan::BLUR_RADII[variant]));
-        let blur = [blur(0)?, blur(1)?, blur(2)?];
+        // SAFETY: the same contract.
+        let of_levels = |kernel| unsafe { ComputePass::new(context, kernel, &[]) };
+        let (mip, kernel) = (of_levels(&TEXTURE_MIP)?, of_levels(&TEXTURE_KERNEL)?);
         let side = size.side(0);
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(FORMAT)
             .extent(vk::Extent3D { width: side, height: side, depth: 1 })
             .mip_levels(size.levels())
-            .array_layers(layers)
+            .array_layers(LAYERS * layers)
             .samples(vk::SampleCountFlags::TYPE_1)
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(USAGE)
@@ -114,7 +105,17 @@ impl LightTextures {
         let image = unsafe { context.device.create_image(&info, None) }.call("vkCreateImage")?;
         context.names.name(image, "light textures");
         let view = vk::ImageView::null();
-        Ok(Self { context: context.clone(), size, layers, load, blur, image, view, level_views: vec![] })
+        Ok(Self {
+            context: context.clone(),
+            size,
+            layers,
+            load,
+            mip,
+            kernel,
+            image,
+            view,
+            level_views: vec![],
+        })
     }
 
     /// What memory the image needs.
@@ -188,7 +189,7 @@ impl LightTextures {
             base_mip_level: levels.start,
             level_count: levels.end - levels.start,
             base_array_layer: 0,
-            layer_count: self.layers,
+            layer_count: LAYERS * self.layers,
         }
     }
 
@@ -231,17 +232,18 @@ impl LightTextures {
 
     /// The layout of a descriptor set for a level.
     pub fn level_set_layout(&self) -> vk::DescriptorSetLayout {
-        self.blur[0].set_layout()
+        self.mip.set_layout()
     }
 
-    /// How many sets there are for levels: one for each but the first.
+    /// How many sets there are for levels: one for each mip but the first, and one for each level of what
+    /// lobes see.
     pub fn level_sets(&self) -> u32 {
-        self.size.levels() - 1
+        2 * self.size.levels() - 1
     }
 
     /// What the sets of all levels, [`LightTextures::level_sets`], take from the host's descriptor pool.
     pub fn level_pool_sizes(&self) -> Vec<vk::DescriptorPoolSize> {
-        self.blur[0].pool_sizes(self.level_sets())
+        self.mip.pool_sizes(self.level_sets())
     }
 
     /// What the sets of `sources` images, at least one, take from the host's descriptor pool.
@@ -265,7 +267,7 @@ impl LightTextures {
         unsafe { self.load[0].write_set(set, &[source, Resource::StorageImage { view: self.level_view(0) }]) }
     }
 
-    /// Points the sets of the levels from 1 on, in turn, at each level and the one before. Once is enough.
+    /// Points the sets at the levels. Once is enough.
     ///
     /// # Safety
     /// Each of `sets` was allocated with [`LightTextures::level_set_layout`] and no pending command buffer
@@ -276,11 +278,14 @@ impl LightTextures {
     /// memory.
     pub unsafe fn write_level_sets(&self, sets: &[vk::DescriptorSet]) -> Result<(), Error> {
         self.check_level_sets(sets)?;
-        for (level, &set) in (1..).zip(sets) {
-            let finer = Resource::SampledImage { view: self.level_view(level - 1), layout: LAYOUT };
-            let coarser = Resource::StorageImage { view: self.level_view(level) };
+        let levels = self.size.levels() as usize;
+        let mips = (1..levels).map(|level| (self.level_view(level - 1), level));
+        let kernels = (0..levels).map(|level| (self.view, level));
+        for ((read, level), &set) in mips.chain(kernels).zip(sets) {
+            let read = Resource::SampledImage { view: read, layout: LAYOUT };
+            let written = Resource::StorageImage { view: self.level_view(level) };
             // SAFETY: the caller vouches for the set; the levels are ours.
-            unsafe { self.blur[0].write_set(set, &[finer, coarser]) }?;
+            unsafe { self.mip.write_set(set, &[read, written]) }?;
         }
         Ok(())
     }
@@ -375,16 +380,29 @@ impl LightTextures {
             // SAFETY: as above.
             unsafe { pass.record(command_buffer, update.source_set, bytes, groups) }?;
         }
-        // Make each further level from the one before
-        for (level, &set) in (1..).zip(level_sets) {
+        // Make each mip from the one before
+        let (mips, kernels) = level_sets.split_at(self.size.levels() as usize - 1);
+        for (level, &set) in (1..).zip(mips) {
             barrier((compute, WRITE), (compute, READ));
             for run in &layers {
-                let constants = BlurConstants { weights: self.size.weights(level), first_layer: run.start };
-                let groups = plan::blur_groups(self.size, level, run.end - run.start);
-                let pass = &self.blur[plan::blur_variant(self.size, level)];
+                let side = self.size.side(level);
+                let groups = TEXTURE_MIP.groups_for([side, side, run.end - run.start]);
+                // SAFETY: as above.
+                unsafe { self.mip.record(command_buffer, set, bytemuck::bytes_of(&run.start), groups) }?;
+            }
+        }
+        // What lobes see, from coarse to fine
+        for (level, &set) in (0..self.size.levels()).zip(kernels).rev() {
+            for update in updates {
+                // Each sees all levels, so that one waits for another of the same, too
+                barrier((compute, WRITE), (compute, READ));
+                let TexturePart { aspect, is_ellipse, .. } = update.part;
+                let constants = [update.layer, level, aspect.to_bits(), u32::from(is_ellipse)];
+                let blocks = self.size.side(level).div_ceil(2);
+                let groups = TEXTURE_KERNEL.groups_for([blocks, blocks, 1]);
                 let bytes = bytemuck::bytes_of(&constants);
                 // SAFETY: as above.
-                unsafe { pass.record(command_buffer, set, bytes, groups) }?;
+                unsafe { self.kernel.record(command_buffer, set, bytes, groups) }?;
             }
         }
         barrier((compute, WRITE), (everything, READ));
@@ -419,8 +437,7 @@ impl LightTextures {
         if sets.len() == self.level_sets() as usize {
             return Ok(());
         }
-        let message =
-            format!("{} given, but there must be {}, one a level from 1 on", sets.len(), self.level_sets());
+        let message = format!("{} given, but there must be {}", sets.len(), self.level_sets());
         Err(Error::InvalidArgument { field: "level_sets", message })
     }
 
@@ -483,8 +500,8 @@ fn check_size(context: &Context, size: PyramidSize, layers: u32) -> Result<(), E
         );
         return Err(Error::InvalidArgument { field: "size", message });
     }
-    if layers == 0 || layers > limits.layers {
-        let message = format!("{layers} must be from 1 to the device's {}", limits.layers);
+    if layers == 0 || layers > limits.layers / LAYERS {
+        let message = format!("{layers} must be from 1 to a quarter of the device's {}", limits.layers);
         return Err(Error::InvalidArgument { field: "layers", message });
     }
     Ok(())

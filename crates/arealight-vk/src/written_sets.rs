@@ -109,7 +109,7 @@ impl WrittenSets {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arealight::kernels::TEXTURE_BLUR;
+    use arealight::kernels::TEXTURE_MIP;
     use ash::vk::Handle as _;
 
     fn written(view: u64) -> [Resource; 2] {
@@ -124,9 +124,9 @@ mod tests {
     fn no_more_sets_are_kept_than_a_host_has_in_flight() {
         let sets = WrittenSets::default();
         for number in 1..=MOST as u64 + 10 {
-            sets.write(vk::DescriptorSet::from_raw(number), TEXTURE_BLUR.bindings(), &written(5), &[]);
+            sets.write(vk::DescriptorSet::from_raw(number), TEXTURE_MIP.bindings(), &written(5), &[]);
             // One that is written again stands where it stood
-            sets.write(vk::DescriptorSet::from_raw(number), TEXTURE_BLUR.bindings(), &written(5), &[]);
+            sets.write(vk::DescriptorSet::from_raw(number), TEXTURE_MIP.bindings(), &written(5), &[]);
         }
         let counts = {
             let sets = sets.lock();
@@ -144,7 +144,7 @@ mod tests {
     fn a_set_is_refused_from_the_image_s_end_until_it_is_written_again() {
         let (sets, set) = (WrittenSets::default(), vk::DescriptorSet::from_raw(1));
         assert_eq!(sets.check(set), Ok(()));
-        sets.write(set, TEXTURE_BLUR.bindings(), &written(5), &[]);
+        sets.write(set, TEXTURE_MIP.bindings(), &written(5), &[]);
         sets.destroy(vk::ImageView::from_raw(6));
         assert_eq!(sets.check(set), Ok(()));
         sets.destroy(vk::ImageView::from_raw(5));
@@ -152,7 +152,7 @@ mod tests {
             if cfg!(debug_assertions) { Err(Error::Destroyed { field: "finer_level" }) } else { Ok(()) };
         assert_eq!(sets.check(set), expected);
         // The driver gives the handle to a new view
-        sets.write(set, TEXTURE_BLUR.bindings(), &written(5), &[]);
+        sets.write(set, TEXTURE_MIP.bindings(), &written(5), &[]);
         assert_eq!(sets.check(set), Ok(()));
     }
 
@@ -160,12 +160,12 @@ mod tests {
     fn a_set_is_refused_by_frames_that_need_what_it_was_written_without() {
         let (sets, set) = (WrittenSets::default(), vk::DescriptorSet::from_raw(1));
         assert_eq!(sets.check_present(set, &["shapes"]), Ok(()), "nobody knows of it");
-        sets.write(set, TEXTURE_BLUR.bindings(), &written(5), &["shapes"]);
+        sets.write(set, TEXTURE_MIP.bindings(), &written(5), &["shapes"]);
         assert_eq!(sets.check_present(set, &["light_textures"]), Ok(()));
         let refused = sets.check_present(set, &["light_textures", "shapes"]);
         assert!(matches!(refused, Err(Error::InvalidArgument { field: "shapes", .. })), "{refused:?}");
         // The twin: written with them
-        sets.write(set, TEXTURE_BLUR.bindings(), &written(5), &[]);
+        sets.write(set, TEXTURE_MIP.bindings(), &written(5), &[]);
         assert_eq!(sets.check_present(set, &["light_textures", "shapes"]), Ok(()));
     }
 }

@@ -153,14 +153,17 @@ pub static MEDIUM_COMPOSE: Kernel =
 /// level. Push constants: [`crate::gpu::TextureLoadConstants`].
 pub static TEXTURE_LOAD: Kernel = Kernel::new("texture_load", include_bytes!("../spirv/texture_load.spv"));
 
-/// Makes a level of the light textures from the one before; an invocation per block of
-/// [`crate::plan::BLUR_BLOCK`] texels of the level and layer. Push constants:
-/// [`crate::pyramid::PyramidSize::weights`] of the level, six
-/// floats, and the first layer.
-pub static TEXTURE_BLUR: Kernel = Kernel::new("texture_blur", include_bytes!("../spirv/texture_blur.spv"));
+/// Makes a mip of the light textures' images from the one before; an invocation per texel and layer. Push
+/// constants: the first layer.
+pub static TEXTURE_MIP: Kernel = Kernel::new("texture_mip", include_bytes!("../spirv/texture_mip.spv"));
+
+/// Makes a level of what lobes see of an image on a light; an invocation per two by two nodes. Push
+/// constants: the layer, the level, [`crate::TexturePart::aspect`] and [`crate::TexturePart::is_ellipse`].
+pub static TEXTURE_KERNEL: Kernel =
+    Kernel::new("texture_kernel", include_bytes!("../spirv/texture_kernel.spv"));
 
 /// Every kernel.
-pub static ALL: [&Kernel; 10] = [
+pub static ALL: [&Kernel; 11] = [
     &SHADE,
     &CLASSIFY,
     &SHADOW_RAYS,
@@ -170,7 +173,8 @@ pub static ALL: [&Kernel; 10] = [
     &MEDIUM_INTEGRATE,
     &MEDIUM_COMPOSE,
     &TEXTURE_LOAD,
-    &TEXTURE_BLUR,
+    &TEXTURE_MIP,
+    &TEXTURE_KERNEL,
 ];
 
 #[cfg(test)]

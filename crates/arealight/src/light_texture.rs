@@ -46,6 +46,16 @@ const STRAIGHT: f64 = 0.25 / crate::pyramid::PyramidSize::LARGEST as f64;
 const OUTSIDE: f64 = 1e-5;
 
 impl TextureMap {
+    /// How many times as wide as high the whole layer is on the light.
+    pub fn aspect(&self) -> f64 {
+        self.axis_u.length() / self.size.x / (self.axis_v.length() / self.size.y)
+    }
+
+    /// The longer side of the whole layer on the light, in roots of its area; at least 1.
+    pub fn longer(&self) -> f64 {
+        self.aspect().max(self.aspect().recip()).sqrt()
+    }
+
     /// The texture coordinate of a position in the light's plane.
     pub fn coordinate(&self, position: DVec3) -> DVec2 {
         // Dual axes in the plane

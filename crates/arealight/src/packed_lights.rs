@@ -236,7 +236,7 @@ impl PackedLights {
             row(corner, map.low.x),
             row(map.axis_u, map.low.y),
             row(map.axis_v, map.size.x),
-            [map.size.y as f32, 0.0, 0.0, 0.0],
+            [map.size.y as f32, map.longer() as f32, 0.0, 0.0],
         ]);
     }
 }

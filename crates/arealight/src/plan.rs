@@ -4,7 +4,6 @@
 use crate::kernels;
 pub use crate::output::{Output, RadianceFormat};
 use crate::planes::Plane;
-use crate::pyramid::{MOST_TAPS, PyramidSize};
 use crate::tiles::{self, TileClass};
 use crate::{Effects, LightSummary, Quality};
 
@@ -387,25 +386,6 @@ fn lobe_specialization(effects: Effects, quality: Quality) -> Vec<(u32, u32)> {
     ]
 }
 
-/// Width and height in texels of what an invocation of the blur kernel makes.
-pub const BLUR_BLOCK: [u32; 2] = [4, 4];
-
-/// Taps to a side that the blur kernel is specialised for: those of most levels, of level 1, which is the
-/// largest, and of all.
-pub const BLUR_RADII: [u32; 3] = [3, 4, MOST_TAPS as u32];
-
-/// The groups that make `level` of so many layers.
-pub fn blur_groups(size: PyramidSize, level: u32, layers: u32) -> [u32; 3] {
-    let [columns, rows] = BLUR_BLOCK.map(|texels| size.side(level).div_ceil(texels));
-    kernels::TEXTURE_BLUR.groups_for([columns, rows, layers])
-}
-
-/// The place in [`BLUR_RADII`] of the fewest taps that are enough for a level.
-pub fn blur_variant(size: PyramidSize, level: u32) -> usize {
-    let taps = size.taps(level);
-    BLUR_RADII.iter().position(|enough| *enough >= taps).unwrap_or(BLUR_RADII.len() - 1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -451,7 +431,6 @@ mod tests {
     #[test]
     fn groups_cover_every_pixel() {
         assert_eq!(kernels::SHADE.groups_for([17, 8, 1]), [3, 1, 1]);
-        assert_eq!(blur_groups(PyramidSize::new(128).unwrap(), 1, 3), [1, 8, 3]);
     }
 
     #[test]

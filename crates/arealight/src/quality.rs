@@ -66,21 +66,17 @@ pub enum Lobes {
     Formula = 1,
 }
 
-/// How the part of a light's texture that a lobe sees is looked up: its footprint on the light, an ellipse
-/// that is far from round where a glossy surface is seen at an angle. Errors against the integral of texture
-/// times lobe: docs/textures.md.
+/// How what a lobe sees of a light's image is looked up. Errors against the integral of image times lobe:
+/// docs/textures.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum Footprint {
-    /// One trilinear fetch with a round footprint.
+    /// Three trilinear fetches of the image filtered by the kernel of a point's distance: exact for Lambert
+    /// surfaces whose horizon does not cut the light, but for the filter.
     #[default]
-    Round = 0,
-    /// Four fetches along the footprint's longer axis.
-    Ellipse = 1,
-    /// The light is split into four by four parts, each with a form factor of its own and two fetches: 16
-    /// form factors and 32 fetches per lobe. Lights with more than four vertices, and concave ones, are split
-    /// into triangles, each into two by two parts.
-    Split = 2,
+    Kernel = 0,
+    /// One fetch of the image's plain mips, as in Heitz et al. 2016: for a chain of mips that is at hand.
+    Mips = 1,
 }
 
 /// A quality level by its name: each has the least error at its cost, or keeps a promise that no other keeps.

@@ -12,6 +12,9 @@ pub(crate) const MOST_TEXELS: f64 = 16384.0;
 /// What texels are divided by: its reciprocal is a number, too.
 pub(crate) const DIVISORS: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
 
+/// How many times as wide as high a light is.
+pub(crate) const ASPECTS: std::ops::RangeInclusive<f32> = 1.0 / 1024.0..=1024.0;
+
 /// Why light textures cannot be made, or a part of an image not be loaded into one.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -31,6 +34,12 @@ pub enum TextureError {
     Divisor {
         /// The divisor given.
         divisor: f32,
+    },
+    /// No light is so long.
+    #[error("aspect: {aspect} must be from 1/1024 to 1024")]
+    Aspect {
+        /// The aspect given.
+        aspect: f32,
     },
     /// The image has no texels, or too many.
     #[error("source of {width} x {height} texels: each must be from 1 to {}; scale it down", LARGEST_SOURCE)]

@@ -3,6 +3,7 @@
 use crate::gpu::TextureLoadConstants;
 use crate::pyramid::PyramidSize;
 use crate::texture_error::{self, TextureError};
+use crate::{Light, LightShape};
 use glam::{DVec2, IVec2};
 
 /// What texture coordinates beyond 0 to 1 read.
@@ -34,12 +35,24 @@ pub struct TexturePart {
     /// 65,504): [`TexturePart::divisor_of`]. The radiance of the lights that show the layer is to be
     /// multiplied by it. From 1e-30 to 1e30.
     pub divisor: f32,
+    /// How many times as wide as high the light is that shows the layer, as texture coordinates run over it:
+    /// what is seen of it is blurred evenly on the light. From 1/1024 to 1024.
+    pub aspect: f32,
+    /// A disk or ellipse shows it, which touches the layer's edges: what is beyond counts nothing.
+    pub is_ellipse: bool,
 }
 
 impl Default for TexturePart {
     /// The whole image.
     fn default() -> Self {
-        Self { low: DVec2::ZERO, size: DVec2::ONE, wrap: [Wrap::Clamp; 2], divisor: 1.0 }
+        Self {
+            low: DVec2::ZERO,
+            size: DVec2::ONE,
+            wrap: [Wrap::Clamp; 2],
+            divisor: 1.0,
+            aspect: 1.0,
+            is_ellipse: false,
+        }
     }
 }
 
@@ -59,6 +72,17 @@ impl TexturePart {
     pub fn divisor_of(brightest: f32) -> f32 {
         let divisor = brightest / 32768.0;
         if texture_error::DIVISORS.contains(&divisor) { divisor } else { 1.0 }
+    }
+
+    /// The same for a light that shows it: its aspect, and whether it is an ellipse. The part as it was where
+    /// the light shows nothing.
+    #[must_use]
+    pub fn shown_by(self, light: &Light) -> Self {
+        let map = light.texture.as_ref().and_then(|texture| texture.map(&light.shape).ok());
+        let Some(map) = map.filter(|map| map.aspect().is_finite()) else { return self };
+        let (least, most) = (*texture_error::ASPECTS.start(), *texture_error::ASPECTS.end());
+        let is_ellipse = matches!(light.shape, LightShape::Disk { .. });
+        Self { aspect: (map.aspect() as f32).clamp(least, most), is_ellipse, ..self }
     }
 
     /// The push constants that load the part of an image of `source` texels into `layer` of textures of
@@ -88,6 +112,9 @@ impl TexturePart {
         }
         if !texture_error::DIVISORS.contains(&self.divisor) {
             return Err(TextureError::Divisor { divisor: self.divisor });
+        }
+        if !texture_error::ASPECTS.contains(&self.aspect) {
+            return Err(TextureError::Aspect { aspect: self.aspect });
         }
 
         // From one texel of the layer to the next, and the first, from the middle of texel 0
@@ -192,6 +219,10 @@ mod tests {
         for divisor in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e31] {
             let error = constants(TexturePart { divisor, ..part }, [4, 4]).unwrap_err();
             assert!(error.to_string().starts_with("divisor: "), "{error}");
+        }
+        for aspect in [0.0, -1.0, f32::NAN, f32::INFINITY, 1025.0] {
+            let error = constants(TexturePart { aspect, ..part }, [4, 4]).unwrap_err();
+            assert!(error.to_string().starts_with("aspect: "), "{error}");
         }
     }
 }

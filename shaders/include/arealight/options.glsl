@@ -171,11 +171,7 @@ const bool AREALIGHT_WANTS_TWO_SHEEN_LOBES = AREALIGHT_HAS_HALF_VECTORS ? true
 const bool AREALIGHT_HAS_TWO_SHEEN_LOBES = AREALIGHT_HAS_SHEEN ? AREALIGHT_WANTS_TWO_SHEEN_LOBES : false;
 const bool AREALIGHT_USES_DIFFERENCE = bool(AREALIGHT_DIFFERENCE);
 
-const int AREALIGHT_FOOTPRINT_ROUND = 0;   // one fetch
-// Four fetches along the footprint's longer axis; of disks split is this, too
-const int AREALIGHT_FOOTPRINT_ELLIPSE = 1;
-// Four by four parts of the light, each with a form factor of its own and two fetches
-const int AREALIGHT_FOOTPRINT_SPLIT = 2;
-const bool AREALIGHT_SPLITS_IMAGES = AREALIGHT_FOOTPRINT == AREALIGHT_FOOTPRINT_SPLIT;
+const int AREALIGHT_FOOTPRINT_KERNEL = 0; // three fetches of levels by the lobe's own kernel
+const int AREALIGHT_FOOTPRINT_MIPS = 1;   // the article's: one fetch of the image's mips
 
 #endif

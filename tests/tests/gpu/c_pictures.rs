@@ -35,6 +35,8 @@ fn part() -> TexturePart {
         size: DVec2::new(1.5, 0.5),
         wrap: [Wrap::Mirror, Wrap::Clamp],
         divisor: 2.5,
+        aspect: 1.5,
+        is_ellipse: true,
     }
 }
 
@@ -226,6 +228,8 @@ impl<'a> CTextures<'a> {
             wrap_u: AREALIGHT_WRAP_MIRROR,
             wrap_v: 0,
             divisor: 2.5,
+            aspect: part().aspect,
+            is_ellipse: 1,
             reserved: 0,
         };
         let recorded = self.engine.host().submit(|commands| {
@@ -240,6 +244,8 @@ impl<'a> CTextures<'a> {
                 (ArealightTextureUpdate { source_width: 0, ..update }, "source of 0 x 3 texels"),
                 (ArealightTextureUpdate { wrap_v: 3, ..update }, "updates[0].wrap_v: 3"),
                 (ArealightTextureUpdate { divisor: -1.0, ..update }, "divisor: -1"),
+                (ArealightTextureUpdate { aspect: -1.0, ..update }, "aspect: -1"),
+                (ArealightTextureUpdate { is_ellipse: 2, ..update }, "updates[0].is_ellipse: 2"),
                 (ArealightTextureUpdate { reserved: 1, ..update }, "updates[0].reserved"),
                 (ArealightTextureUpdate { decode_srgb: 2, ..update }, "updates[0].decode_srgb: 2"),
                 (ArealightTextureUpdate { part_size: [f64::NAN, 1.0], ..update }, "size"),

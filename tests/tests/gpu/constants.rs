@@ -2,7 +2,6 @@
 
 use arealight::gpu;
 use arealight::plan::{GBufferLayout, Output, RadianceFormat, ShadeOptions};
-use arealight::pyramid::MOST_TAPS;
 use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, SpecularLobes, TileClass, TubeEnds, tiles};
 use std::collections::BTreeMap;
 
@@ -42,7 +41,8 @@ const TUBE_OUTLINE_GLSL: &str =
     include_str!("../../../shaders/include/arealight/form_factor/tube_outline.glsl");
 const SCENE_GLSL: &str = include_str!("../../../tools/kernels/shaders/scene.glsl");
 const TEXTURE_LOAD_COMP: &str = include_str!("../../../shaders/kernels/texture_load.comp");
-const TEXTURE_BLUR_COMP: &str = include_str!("../../../shaders/kernels/texture_blur.comp");
+const IMAGE_LAYERS_GLSL: &str = include_str!("../../../shaders/kernels/image_layers.glsl");
+const TEXTURE_KERNEL_COMP: &str = include_str!("../../../shaders/kernels/texture_kernel.comp");
 const G_BUFFER_GLSL: &str = include_str!("../../../shaders/kernels/g_buffer.glsl");
 const OUTPUT_TEXEL_GLSL: &str = include_str!("../../../shaders/kernels/output_texel.glsl");
 const SHADOW_HISTORY_GLSL: &str = include_str!("../../../shaders/kernels/shadow_history.glsl");
@@ -151,11 +151,7 @@ fn choices_have_the_same_numbers_in_glsl() {
         ("HALF_VECTORS", number(SpecularLobes::HalfVectors as u32)),
     ];
     assert_constants(EFFECTS_GLSL, "SPECULAR_LOBES_", &specular_lobes);
-    let footprints = [
-        ("ROUND", number(Footprint::Round as u32)),
-        ("ELLIPSE", number(Footprint::Ellipse as u32)),
-        ("SPLIT", number(Footprint::Split as u32)),
-    ];
+    let footprints = [("KERNEL", number(Footprint::Kernel as u32)), ("MIPS", number(Footprint::Mips as u32))];
     assert_constants(OPTIONS_GLSL, "AREALIGHT_FOOTPRINT_", &footprints);
     let depth = [("DEPTH", number(u32::from(true)))];
     assert_constants(POSITION_GLSL, "POSITION_FROM_", &depth);
@@ -207,7 +203,10 @@ fn choices_have_the_same_numbers_in_glsl() {
         ("PIXEL", number(arealight::plan::SHADOW_HISTORY_PIXEL as u32)),
     ];
     assert_constants(SHADOW_HISTORY_GLSL, "HISTORY_", &history);
-    assert_constants(TEXTURE_BLUR_COMP, "MAX_RADIUS", &[("", MOST_TAPS as f64)]);
+    let finest = [("HEIGHT", arealight::pyramid::FINEST_HEIGHT)];
+    assert_constants(FOOTPRINT_GLSL, "AREALIGHT_FINEST_", &finest);
+    assert_constants(TEXTURE_KERNEL_COMP, "FINEST_", &finest);
+    assert_constants(IMAGE_LAYERS_GLSL, "IMAGE_", &[("LAYERS", arealight::pyramid::LAYERS.into())]);
     let shapes = [
         ("DISK", number(gpu::GpuShape::DISK)),
         ("SPHERE", number(gpu::GpuShape::SPHERE)),
@@ -221,8 +220,6 @@ fn choices_have_the_same_numbers_in_glsl() {
         ("ROUND", number(TubeEnds::Round as u32)),
     ];
     assert_constants(TUBE_OUTLINE_GLSL, "AREALIGHT_TUBE_", &ends);
-    let [width, height] = arealight::plan::BLUR_BLOCK.map(number);
-    assert_constants(TEXTURE_BLUR_COMP, "BLOCK_", &[("WIDTH", width), ("HEIGHT", height)]);
     let steps = [
         ("RESAMPLING", number(gpu::TextureLoadConstants::RESAMPLE)),
         ("DECODING", number(gpu::TextureLoadConstants::DECODE)),

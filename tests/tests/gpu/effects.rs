@@ -98,7 +98,7 @@ fn code_that_no_light_needs_changes_no_bit() {
         form_factor: FormFactor::Difference,
         horizon: Horizon::Both,
         specular_lobes: SpecularLobes::Two,
-        footprint: Footprint::Ellipse,
+        footprint: Footprint::Mips,
         ..Quality::default()
     };
     // Pipelines take their time: each effect once, and all but one of them at once on levels that bring code

@@ -16,7 +16,7 @@ const LEVEL: Quality = Quality {
     form_factor: FormFactor::Exact,
     horizon: Horizon::Cosine,
     lobes: Lobes::Table,
-    footprint: Footprint::Round,
+    footprint: Footprint::Kernel,
 };
 
 /// Metals of every roughness, every third stretched along a tangent.

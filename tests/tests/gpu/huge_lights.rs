@@ -242,7 +242,8 @@ fn lit_pixels(engine: &TestEngine, scene: &Scene, camera: &Camera, light: &Light
 #[test]
 fn a_two_sided_light_does_not_light_itself() {
     let Some(mut engine) = TestEngine::new() else { return };
-    pictures::load(&mut engine, &[Arc::new(Texture::gradient(8, 8))], |_| 1.0).expect("a picture");
+    pictures::load(&mut engine, &[Arc::new(Texture::gradient(8, 8))], |_| TexturePart::default())
+        .expect("a picture");
     let normal = DVec3::new(0.3, -0.5, 0.8).normalize_or_zero();
     let (u, v) = normal.any_orthonormal_pair();
     // What the camera sees is the light's own sheet; the twin: that is a ten thousandth of its size behind

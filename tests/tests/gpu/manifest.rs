@@ -62,11 +62,12 @@ fn sizes_and_constants_are_those_of_the_shaders() {
     assert_eq!(size(&kernels::SHADOW_FILTER), size_of::<arealight::gpu::ShadowConstants>());
     assert_eq!(size(&kernels::MEDIUM_SCATTER), size_of::<arealight::gpu::MediumConstants>());
     assert_eq!(size(&kernels::TEXTURE_LOAD), size_of::<arealight::gpu::TextureLoadConstants>());
-    assert_eq!(size(&kernels::TEXTURE_BLUR), 4 * (arealight::pyramid::MOST_TAPS + 1));
+    assert_eq!(size(&kernels::TEXTURE_MIP), size_of::<u32>());
+    assert_eq!(size(&kernels::TEXTURE_KERNEL), size_of::<[u32; 4]>());
     assert_eq!(size(&tool::kernels::EVAL), size_of::<tool::gpu::EvalConstants>());
     assert_eq!(size(&tool::kernels::REFERENCE), size_of::<tool::gpu::ReferenceConstants>());
     assert_eq!(size(&tool::kernels::VISIBILITY), size_of::<tool::gpu::VisibilityConstants>());
-    assert_eq!(kernels::TEXTURE_BLUR.constants(), [constant::RADIUS]);
+    assert_eq!(kernels::TEXTURE_LOAD.constants(), [constant::LOAD_STEPS]);
     assert_eq!(tool::kernels::REFERENCE.constants(), [tool::kernels::SHADOWS, tool::kernels::COUPLED]);
     assert!(shade.constants().contains(&constant::SAMPLES) && !shade.constants().contains(&constant::CULL));
 }

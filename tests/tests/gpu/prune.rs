@@ -104,7 +104,7 @@ fn specializations(kernel: &Kernel) -> Vec<Vec<(u32, u32)>> {
         Quality { horizon: Horizon::Both, ..plain },
         Quality { specular_lobes: SpecularLobes::Two, ..plain },
         Quality { specular_lobes: SpecularLobes::HalfVectors, ..plain },
-        Quality { footprint: Footprint::Split, ..plain },
+        Quality { footprint: Footprint::Mips, ..plain },
     ] {
         all.push(shade(Effects::all(), quality));
     }
@@ -148,7 +148,7 @@ fn every_kernel_stays_valid_however_it_is_specialised() {
         }
     }
     // The twin: what is not valid is seen
-    let mut broken = prune(&kernels::TEXTURE_BLUR.words(), &[]);
+    let mut broken = prune(&kernels::TEXTURE_MIP.words(), &[]);
     broken.pop();
     if let Some(found) = validated(&broken) {
         assert!(found.is_err());

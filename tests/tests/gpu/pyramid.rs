@@ -1,10 +1,11 @@
-//! The prefilter on the GPU, every level of it, against float64: images of any size, repeated and in part;
-//! what is black, blinding or not a number; and layers that are left alone.
+//! Images on lights as the GPU stores them, every level, against float64: images of any size, repeated and in
+//! part; what is black, blinding or not a number; what lobes see of them; and layers that are left alone.
 
-use arealight::{TexturePart, Wrap};
-use arealight_engine::{Engine, EngineError, SourceImage, SourceTexels};
+use arealight::Wrap;
+use arealight_engine::{Engine, EngineError, Of, SourceImage, SourceTexels};
 use arealight_oracle::texture::Pyramid;
 use arealight_tests::prelude::*;
+use glam::DVec4;
 
 /// The largest number of sixteen bits.
 const LARGEST: f64 = 65504.0;
@@ -104,41 +105,47 @@ impl Picture {
     }
 }
 
-/// Compares every level of a layer with its twin.
+/// Compares every mip of a layer with its twin.
 fn compare(
     engine: &Engine,
     layer: u32,
-    twin: &Pyramid,
+    picture: &Texture,
     resampling: f64,
     comparison: &mut Comparison,
     name: &str,
 ) {
-    let largest = twin.level(0).texels().iter().map(|texel| texel.max_element()).fold(0.0, f64::max);
-    for level in 0..twin.size().levels() {
-        let found = engine.download_level(layer, level).unwrap();
-        let expected = twin.level(level);
+    let largest = picture.brightest();
+    let mut expected = picture.clone();
+    for level in 0..engine.texture_size().expect("textures were loaded").levels() {
+        let found = engine.download_level(layer, Of::Image, level).unwrap();
         assert_eq!(found.len(), expected.texels().len());
         // Each level rounds once, and averages what the ones before have rounded: nothing is negative, so
-        // that relative errors only add. In each, float32 rounds 24 sums and products, which is little
-        // beside.
-        let relative = f64::from(level + 1) * (HALF_ULP + 24.0 * 2.0_f64.powi(-24));
-        for (index, (found, expected)) in found.iter().zip(expected.texels()).enumerate() {
+        // that relative errors only add. In each, float32 rounds 4 sums and products, which is little beside.
+        let relative = f64::from(level + 1) * (HALF_ULP + 4.0 * 2.0_f64.powi(-24));
+        for (index, (found, texel)) in found.iter().zip(expected.texels()).enumerate() {
             for channel in 0..3 {
-                let bound = relative * expected[channel]
-                    + f64::from(level + 1) * HALF_SMALLEST
-                    + resampling * largest;
-                comparison.add(found[channel].into(), expected[channel], bound, || {
-                    let (x, y) = (index % expected_width(twin, level), index / expected_width(twin, level));
+                let bound =
+                    relative * texel[channel] + f64::from(level + 1) * HALF_SMALLEST + resampling * largest;
+                comparison.add(found[channel].into(), texel[channel], bound, || {
+                    let (x, y) = (index % expected.width(), index / expected.width());
                     format!("{name}, level {level}, texel {x} {y}")
                 });
             }
             assert_eq!(found[3], 1.0, "alpha");
         }
+        expected = halved(&expected);
     }
 }
 
-fn expected_width(twin: &Pyramid, level: u32) -> usize {
-    twin.level(level).width()
+/// Means of four texels.
+fn halved(finer: &Texture) -> Texture {
+    let side = (finer.width() / 2).max(1);
+    Texture::from_fn(side, side, |x, y| {
+        let at = |column: usize, row: usize| {
+            finer.texel((2 * x + column).cast_signed(), (2 * y + row).cast_signed())
+        };
+        0.25 * (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1))
+    })
 }
 
 /// Loads the pictures, a layer each, and compares them all.
@@ -146,9 +153,8 @@ fn check(engine: &mut TestEngine, size: PyramidSize, pictures: &[Picture], compa
     let sources: Vec<_> = pictures.iter().map(Picture::source).collect();
     engine.load_textures(size, &sources).unwrap();
     for (layer, picture) in (0..).zip(pictures) {
-        let twin = Pyramid::new(&picture.resampled(size), size);
         let name = format!("{:?} in {size:?}, {:?}", picture.size, picture.part);
-        compare(engine, layer, &twin, picture.resampling_error(size), comparison, &name);
+        compare(engine, layer, &picture.resampled(size), picture.resampling_error(size), comparison, &name);
     }
 }
 
@@ -166,6 +172,59 @@ fn every_level_of_images_of_any_size_is_the_twins() {
     comparison.assert_all();
 }
 
+/// Every layer of an image.
+const LAYERS: [Of; 4] = [Of::Image, Of::A, Of::BRows, Of::BColumns];
+
+#[test]
+fn what_lobes_see_is_the_sum_over_all_texels() {
+    let Some(mut engine) = TestEngine::new() else { return };
+    let size = PyramidSize::new(64).unwrap();
+    let mut worst = 0.0_f64;
+    for (aspect, is_ellipse) in [(1.0, false), (1.0, true), (2.0, false), (0.25, false)] {
+        let part = TexturePart { aspect, is_ellipse, ..TexturePart::default() };
+        // Of images with texels that are no squares on the light, rows are skipped
+        let checker = |x: u32, y: u32| [(x / 8 + y / 8) % 2, x / 32, 1].map(|it| it as f32);
+        let noise = Picture::noise([if aspect == 1.0 { 64 } else { 8 }; 2], 5);
+        let pictures = [noise, Picture::new([64, 64], checker)];
+        let pictures = pictures.map(|picture| Picture { part, ..picture });
+        engine.load_textures(size, &pictures.each_ref().map(Picture::source)).unwrap();
+        for (layer, picture) in (0..).zip(&pictures) {
+            let twin = Pyramid::new(&picture.resampled(size), size, aspect.into(), is_ellipse);
+            for (of, level) in LAYERS.iter().flat_map(|of| (0..size.levels()).map(move |at| (*of, at))) {
+                // Only ratios count: over what is covered, and of B over how far it is off
+                let level_of = |of| engine.download_level(layer, of, level).unwrap();
+                let (found, covered) = (level_of(of), level_of(Of::A));
+                let pairs = twin.level(of as usize, level).iter().zip(twin.level(1, level));
+                let (mut squares, mut count) = (0.0, 0.0);
+                for (index, ((found, covered), (expected, over))) in
+                    found.iter().zip(&covered).zip(pairs).enumerate()
+                {
+                    // Within two sides of the light: few nodes are farther out
+                    let side = size.side(level) as usize;
+                    let node = DVec2::new((index % side) as f64 + 0.5, (index / side) as f64 + 0.5);
+                    if (node / side as f64 - 0.5).abs().max_element() > 0.45 {
+                        continue;
+                    }
+                    count += 1.0;
+                    let (found, expected) = if of == Of::Image {
+                        (DVec4::from_array(found.map(f64::from)), *expected)
+                    } else {
+                        let found = DVec4::from_array(found.map(f64::from)) / f64::from(covered[3]);
+                        (found, *expected / over.w)
+                    };
+                    let off = (found - expected) / (1.0 + expected.w.abs());
+                    squares += off.length_squared() / 4.0;
+                }
+                let off = (squares / count).sqrt();
+                println!("aspect {aspect}, {is_ellipse}, picture {layer}, {of:?}, level {level}: {off:.5}");
+                worst = worst.max(off);
+            }
+        }
+    }
+    // What falls beyond three heights, and what is between nodes of coarser levels
+    assert!(worst < 0.03, "{worst}");
+}
+
 #[test]
 fn the_comparison_finds_another_picture_another_kernel_and_a_cut_bit() {
     let Some(mut engine) = TestEngine::new() else { return };
@@ -174,7 +233,7 @@ fn the_comparison_finds_another_picture_another_kernel_and_a_cut_bit() {
     engine.load_textures(size, &[picture.source()]).unwrap();
     let failures = |twin: &Picture, of: PyramidSize| {
         let mut comparison = Comparison::new("twin");
-        compare(&engine, 0, &Pyramid::new(&twin.resampled(of), of), 0.0, &mut comparison, "twin");
+        compare(&engine, 0, &twin.resampled(of), 0.0, &mut comparison, "twin");
         comparison.failures()
     };
     assert_eq!(failures(&picture, size), 0);
@@ -200,6 +259,7 @@ fn parts_and_repeats_are_the_twins() {
         size: DVec2::from_array(size),
         wrap,
         divisor: 0.3,
+        ..TexturePart::default()
     };
     let (clamp, repeat, mirror) = (Wrap::Clamp, Wrap::Repeat, Wrap::Mirror);
     let mut pictures: Vec<_> = [
@@ -244,10 +304,9 @@ fn srgb_is_decoded() {
             .collect();
         let source = SourceImage { texels: SourceTexels::Srgb(&codes), ..linear.source() };
         engine.load_textures(size, &[source]).unwrap();
-        let twin = Pyramid::new(&linear.resampled(size), size);
         // exp2 and log2 of float32, which pow is made of, are rounded by a few 2^-22
         let error = 2e-6 + linear.resampling_error(size);
-        compare(&engine, 0, &twin, error, &mut comparison, "sRGB");
+        compare(&engine, 0, &linear.resampled(size), error, &mut comparison, "sRGB");
     }
     comparison.assert_all();
 }
@@ -265,7 +324,7 @@ fn a_constant_stays_what_it_is_to_the_bit() {
         engine.load_textures(size, &sources).unwrap();
         for (layer, value) in (0..).zip(values) {
             for level in 0..size.levels() {
-                let found = engine.download_level(layer, level).unwrap();
+                let found = engine.download_level(layer, Of::Image, level).unwrap();
                 assert!(
                     found.iter().all(|texel| *texel == [value, value, value, 1.0]),
                     "{value} from {source:?}, level {level}: {:?}",
@@ -314,22 +373,22 @@ fn updating_a_layer_leaves_the_others_alone() {
     engine.load_textures(size, &sources).unwrap();
     let every_level = |engine: &Engine, layer: u32| -> Vec<Vec<[u32; 4]>> {
         let bits = |texel: &[f32; 4]| texel.map(f32::to_bits);
-        let level = |level| engine.download_level(layer, level).unwrap().iter().map(bits).collect();
-        (0..size.levels()).map(level).collect()
+        let level = |of, level| engine.download_level(layer, of, level).unwrap().iter().map(bits).collect();
+        LAYERS.iter().flat_map(|of| (0..size.levels()).map(|at| level(*of, at))).collect()
     };
     let before: Vec<_> = (0..4).map(|layer| every_level(&engine, layer)).collect();
     let another = Picture::noise([64, 64], 99);
     engine.update_texture(2, &another.source()).unwrap();
     for layer in 0..4 {
         let after = every_level(&engine, layer);
-        for level in 0..size.levels() as usize {
-            let same = after[level] == before[layer as usize][level];
-            assert_eq!(same, layer != 2, "layer {layer}, level {level}");
+        for (level, (after, before)) in after.iter().zip(&before[layer as usize]).enumerate() {
+            // B of a single node is 0, nearly
+            let same = after == before || layer == 2 && after.len() == 1;
+            assert_eq!(same, layer != 2 || after.len() == 1, "layer {layer}, level {level}");
         }
     }
     let mut comparison = Comparison::new("the updated layer");
-    let twin = Pyramid::new(&another.resampled(size), size);
-    compare(&engine, 2, &twin, 0.0, &mut comparison, "updated");
+    compare(&engine, 2, &another.resampled(size), 0.0, &mut comparison, "updated");
     comparison.assert_all();
 }
 
@@ -352,9 +411,9 @@ fn what_is_not_there_is_named() {
     let picture = Picture::noise([3, 2], 1);
     engine.load_textures(size, &[picture.source(), picture.source()]).unwrap();
     engine.check_layers(&lights).unwrap();
-    for (layer, level) in [(2, 0), (0, 5)] {
-        let error = engine.download_level(layer, level).unwrap_err();
-        assert!(matches!(error, EngineError::NoTextureLevel { layers: 2, levels: 5, .. }), "{error}");
+    for (layer, level) in [(2, 0), (0, 7)] {
+        let error = engine.download_level(layer, Of::Image, level).unwrap_err();
+        assert!(matches!(error, EngineError::NoTextureLevel { layers: 2, levels: 7, .. }), "{error}");
     }
     let short = SourceImage { size: [3, 3], ..picture.source() };
     let error = engine.update_texture(1, &short).unwrap_err();

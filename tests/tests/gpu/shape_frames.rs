@@ -206,7 +206,8 @@ fn the_reference_samples_shapes() {
     const SIZE: [u32; 2] = [24, 16];
     const SAMPLES: u32 = 256;
     let Some(mut engine) = TestEngine::new() else { return };
-    pictures::load(&mut engine, &[Arc::new(Texture::gradient(64, 64))], |_| 1.0).expect("a picture");
+    pictures::load(&mut engine, &[Arc::new(Texture::gradient(64, 64))], |_| TexturePart::default())
+        .expect("a picture");
     let mut kinds = shapes();
     kinds[4].shape = match kinds[4].shape.clone() {
         // What is open shines less than what has caps: seen from below, and nearly along the axis

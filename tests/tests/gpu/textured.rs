@@ -1,13 +1,13 @@
 //! Textured lights: energy, orientation, and the cases that have no easy answer.
 
 use arealight_benches::pictures;
-use arealight_engine::{SourceImage, SourceTexels};
-use arealight_oracle::shading::footprint::{Filter, LobeSpaceLight, filtered};
+use arealight_engine::{Engine, Of, SourceImage, SourceTexels};
+use arealight_oracle::shading::footprint;
 use arealight_oracle::texture::Pyramid;
 use arealight_tests::prelude::*;
 use std::sync::Arc;
 
-const FOOTPRINTS: [Footprint; 3] = [Footprint::Round, Footprint::Ellipse, Footprint::Split];
+const FOOTPRINTS: [Footprint; 2] = [Footprint::Kernel, Footprint::Mips];
 
 /// Layers of the test's textures.
 const WHITE: u32 = 0;
@@ -35,7 +35,7 @@ fn engine() -> Option<TestEngine> {
     let image = |texels| SourceImage {
         texels: SourceTexels::Linear(texels),
         size: [SIZE, SIZE],
-        part: arealight::TexturePart::default(),
+        part: TexturePart::default(),
     };
     let size = PyramidSize::new(SIZE).unwrap();
     engine.load_textures(size, &[image(&white), image(&split), image(&huge)]).unwrap();
@@ -107,16 +107,16 @@ fn without_texture(points: &[EvalPoint]) -> Vec<EvalPoint> {
 
 /// Levels with textures; the dearest with the dearest of the other choices. A software driver takes a second
 /// for each pipeline, and there are four for a quality: of quads and of polygons, with and without images.
-fn qualities() -> [Quality; 4] {
+fn qualities() -> [Quality; 3] {
     let level = |footprint| Quality { footprint, ..Quality::default() };
-    let [round, ellipse, split] = FOOTPRINTS.map(level);
+    let [kernel, mips] = FOOTPRINTS.map(level);
     let dear = Quality {
         form_factor: FormFactor::Difference,
         specular_lobes: SpecularLobes::Two,
         horizon: Horizon::Both,
-        ..split
+        ..kernel
     };
-    [round, ellipse, split, dear]
+    [kernel, mips, dear]
 }
 
 #[test]
@@ -130,13 +130,8 @@ fn a_white_image_changes_nothing() {
         let mut comparison = Comparison::new(format!("{quality:?}"));
         let mut lit = 0;
         for (index, (with, without)) in with.iter().zip(&without).enumerate() {
-            // White is exact in binary16, at every level; the parts' form factors are rounded one by one, by
-            // 1e-6 each
-            let parts = match quality.footprint {
-                Footprint::Round | Footprint::Ellipse => 0.0,
-                Footprint::Split => 16.0,
-            };
-            let bound = 1e-3 * f64::from(without.x) + 1e-6 * (1.0 + parts);
+            // White is what it covers, to float32's rounding
+            let bound = 1e-5 * f64::from(without.x) + 1e-6;
             comparison.add(with.x.into(), without.x.into(), bound, || format!("point {index}"));
             lit += usize::from(without.x > 0.01);
         }
@@ -153,65 +148,51 @@ fn a_white_image_changes_nothing() {
 #[test]
 fn lookups_are_those_of_their_float64_twins() {
     let Some(engine) = engine() else { return };
-    let texel = |column: usize, row: usize| {
-        let [r, g, b, _] = split(column as u32, row as u32);
-        DVec3::new(r.into(), g.into(), b.into())
-    };
-    let size = PyramidSize::new(SIZE).unwrap();
-    let pyramid = Pyramid::new(&Texture::from_fn(SIZE as usize, SIZE as usize, texel), size);
+    let pyramid = downloaded(&engine, SPLIT);
     // Under Lambert's lobe cosine space is the surface's: nothing else differs
     let mut given = points(4, SPLIT, 900);
     given.retain(|point| point.surface == lambert_surface());
-    for footprint in FOOTPRINTS {
+    for one in FOOTPRINTS {
         // Relative precision, as lights may be small
-        let quality = Quality { form_factor: FormFactor::Difference, footprint, ..Quality::default() };
+        let quality = Quality { form_factor: FormFactor::Difference, footprint: one, ..Quality::default() };
         let answers = engine.eval(&given, quality).unwrap();
-        let mut comparison = Comparison::new(format!("{footprint:?}"));
+        let plain = engine.eval(&without_texture(&given), quality).unwrap();
+        let mut comparison = Comparison::new(format!("{one:?}"));
         let mut twin = 0;
-        for (index, (point, answer)) in given.iter().zip(&answers).enumerate() {
-            let expected = seen_color(point, &pyramid, Filter::Level(footprint));
-            // Sixteen bits a texel and levels' share and place to 1/256 between texels that differ by one:
-            // 1/256 of the light, twice; a footprint's axis turns freely where it is nearly round, which
-            // moves taps by what is left
-            let whole =
-                seen_color(&without_texture(std::slice::from_ref(point))[0], &pyramid, Filter::Article).x;
-            let bound = 1e-2 * whole + 2e-5;
+        for (index, (point, (answer, plain))) in given.iter().zip(answers.iter().zip(&plain)).enumerate() {
+            let light = &point.light;
+            let map = light.texture.as_ref().unwrap().map(&light.shape).unwrap();
+            let [expected, other] = FOOTPRINTS
+                .map(|of| {
+                    let color = footprint::seen(of, &map, &pyramid);
+                    let answer = color * f64::from(plain.x);
+                    (answer, of == one)
+                })
+                .into_iter()
+                .fold(
+                    [DVec3::ZERO; 2],
+                    |[expected, other], (color, is_it)| {
+                        if is_it { [color, other] } else { [expected, color] }
+                    },
+                );
+            // Levels' share and place to 1/256 between texels that differ by one, and of A and B as much
+            let bound = 1e-2 * f64::from(plain.x) + 2e-5;
             for axis in 0..3 {
                 comparison.add(f64::from(answer[axis]), expected[axis], bound, || format!("point {index}"));
             }
-            let other = seen_color(point, &pyramid, Filter::Article);
             twin += usize::from((other - answer.as_dvec3()).abs().max_element() > bound);
         }
         comparison.assert_all();
-        assert!(twin > 20, "{footprint:?}: another filter's answers are told from these: {twin}");
+        assert!(twin > 20, "{one:?}: another lookup's answers are told from these: {twin}");
     }
 }
 
-/// What the filter's twin says of a point under Lambert's lobe; without an image, of a white one.
-fn seen_color(point: &EvalPoint, pyramid: &Pyramid, filter: Filter) -> DVec3 {
-    let mut light = point.light.clone();
-    let white = light.texture.is_none();
-    if white {
-        shown(&mut light, WHITE);
-    }
-    let map = light.texture.as_ref().unwrap().map(&light.shape).unwrap();
-    let seen = LobeSpaceLight {
-        vertices: light.shape.vertices().to_vec(),
-        center: light.shape.center(),
-        map,
-        texels: DVec2::splat(f64::from(SIZE)) * map.size,
-        horizons: Vec::new(),
-        convex_quad: light.shape.is_convex_quad(),
-    };
-    let color =
-        filtered(
-            filter,
-            &seen,
-            |uv, sigma| {
-                if white { DVec3::ONE } else { pyramid.blurred(uv, sigma, map.size) }
-            },
-        );
-    if light.two_sided { color.abs() } else { color.max(DVec3::ZERO) }
+/// What the device has for a layer.
+fn downloaded(engine: &Engine, layer: u32) -> Pyramid {
+    let of = |number| [Of::Image, Of::A, Of::BRows, Of::BColumns][number as usize];
+    Pyramid::from_levels(PyramidSize::new(SIZE).unwrap(), |number, level| {
+        engine.download_level(layer, of(number), level).unwrap()
+    })
 }
 
 #[test]
@@ -428,13 +409,11 @@ fn screens_of_any_aspect_show_their_colours_beside_others() {
     let Some(mut engine) = TestEngine::new() else { return };
     let sizes = [[256, 144], [256, 128], [64, 192], [512, 32], [256, 256]];
     let pictures = sizes.map(bars);
-    pictures::load(&mut engine, &pictures, |_| 1.0).unwrap();
+    let aspect = |layer: usize| pictures[layer].width() as f32 / pictures[layer].height() as f32;
+    let part = |layer| TexturePart { aspect: aspect(layer), ..TexturePart::default() };
+    pictures::load(&mut engine, &pictures, part).unwrap();
     for (layer, picture) in (0..).zip(&pictures) {
         for distance in [0.5, 2.0, 8.0, 16.0, 32.0] {
-            // Nearer to the longest, one blur for both directions sees too much of its length
-            if distance < 16.0 && picture.width() > 4 * picture.height() {
-                continue;
-            }
             let off = |shown| (wall(&engine, layer, picture, distance, shown) - 1.0).abs().max_element();
             println!("{:?} at {distance}: {:.4}", sizes[layer as usize], off(1.0));
             assert!(off(1.0) < 0.02, "{:?} at {distance}: {}", sizes[layer as usize], off(1.0));

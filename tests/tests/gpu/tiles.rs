@@ -197,7 +197,7 @@ fn tiles_list_the_shapes_that_contribute_to_them() {
 fn images_of_disks_are_looked_up_by_tiles_too() {
     let Some(mut engine) = TestEngine::new() else { return };
     let textures = [Texture::gradient(128, 128), Texture::from_fn(128, 128, |_, _| DVec3::ONE)].map(Arc::new);
-    arealight_benches::pictures::load(&mut engine, &textures, |_| 1.0).unwrap();
+    arealight_benches::pictures::load(&mut engine, &textures, |_| TexturePart::default()).unwrap();
     let shade = |layer| {
         let mut scene = shape_scene(1.0);
         scene.lights.retain(|light| matches!(light.shape, LightShape::Disk { .. }));

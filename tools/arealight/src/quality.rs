@@ -24,7 +24,7 @@ pub struct QualityArguments {
     /// Within the level: where the glossy lobe comes from
     #[arg(long, value_enum, value_name = "WHERE")]
     lobes: Option<Source>,
-    /// How light textures are looked up [default: round]
+    /// How light textures are looked up [default: kernel]
     #[arg(long, value_enum, value_name = "HOW")]
     footprint: Option<Lookup>,
     /// A fitted table, of any format that `arealight table` writes; the built-in one if absent
@@ -101,12 +101,10 @@ impl From<LobeCount> for SpecularLobes {
 /// How the part of a texture that a lobe sees is looked up.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub enum Lookup {
-    /// One fetch with a round footprint
-    Round,
-    /// Four fetches along the footprint's longer axis
-    Ellipse,
-    /// The light in four by four parts, a form factor and two fetches each
-    Split,
+    /// Three fetches of the image filtered by the lobe's own kernel
+    Kernel,
+    /// One fetch of plain mips, as in Heitz et al. 2016
+    Mips,
 }
 
 /// The names of levels, with hyphens for spaces.
@@ -140,9 +138,8 @@ impl QualityArguments {
         };
         let footprint = match self.footprint {
             None => default.footprint,
-            Some(Lookup::Round) => Footprint::Round,
-            Some(Lookup::Ellipse) => Footprint::Ellipse,
-            Some(Lookup::Split) => Footprint::Split,
+            Some(Lookup::Kernel) => Footprint::Kernel,
+            Some(Lookup::Mips) => Footprint::Mips,
         };
         Quality { form_factor, horizon, specular_lobes, lobes, footprint }
     }

@@ -34,7 +34,7 @@ pub use render::shadowed::ShadowedView;
 pub use render::tiled::{TileCounts, TileLists, TiledView};
 pub use render::{Reference, SceneRenderer};
 pub use texture_array::{TextureArray, TextureSource};
-pub use textures::{SourceImage, SourceTexels};
+pub use textures::{Of, SourceImage, SourceTexels};
 
 use crate::host::Buffer;
 use arealight::kernels::Kernel;

@@ -3,6 +3,7 @@
 use crate::host::Location;
 use crate::texture_array::TextureArray;
 use crate::{Engine, EngineError};
+use arealight::pyramid::LAYERS;
 use arealight::{Light, PyramidSize, TexturePart};
 use arealight_vk::Resource;
 use ash::vk;
@@ -16,6 +17,20 @@ pub struct SourceImage<'a> {
     pub size: [u32; 2],
     /// The part that is shown.
     pub part: TexturePart,
+}
+
+/// Array layers of a light's image, in this order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Of {
+    /// Itself, and its mips.
+    Image,
+    /// A (`shaders/include/arealight/textures/footprint.glsl`).
+    A,
+    /// B along the image's rows.
+    BRows,
+    /// B along its columns.
+    BColumns,
 }
 
 /// Texels of an image; alpha has no meaning.
@@ -105,8 +120,9 @@ impl Engine {
         Ok(Light::check_texture_layers(lights, self.texture_layers())?)
     }
 
-    /// A level of a layer: [`PyramidSize::side`] texels a side, row after row.
-    pub fn download_level(&self, layer: u32, level: u32) -> Result<Vec<[f32; 4]>, EngineError> {
+    /// A level of a layer, of the image or of what lobes see of it: [`PyramidSize::side`] texels a side, row
+    /// after row.
+    pub fn download_level(&self, layer: u32, of: Of, level: u32) -> Result<Vec<[f32; 4]>, EngineError> {
         let (textures, side) = self.texture_level(layer, level)?;
         let texels = (side * side) as usize;
         let bytes = (texels * size_of::<[half::f16; 4]>()) as u64;
@@ -115,7 +131,7 @@ impl Engine {
         let subresource = vk::ImageSubresourceLayers {
             aspect_mask: vk::ImageAspectFlags::COLOR,
             mip_level: level,
-            base_array_layer: layer,
+            base_array_layer: LAYERS * layer + of as u32,
             layer_count: 1,
         };
         let region = vk::BufferImageCopy::default()

@@ -15,10 +15,11 @@ use crate::small_parts;
 use arealight::pyramid::PyramidSize;
 use arealight::{Light, LightShape, LightTexture, TexturePart};
 use glam::DVec2;
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
-/// The most light textures a scene has; further lights have the mean colour of what they show. As many layers
-/// as every Vulkan device can have in an image.
+/// The most light textures a scene has; further lights have the mean colour of what they show. Each takes
+/// four array layers, of which desktop GPUs have 2,048.
 pub const MAX_LIGHT_TEXTURES: usize = 256;
 
 /// The most texels that [`Scene::light_texture_size`] allows for all layers: half a gibibyte at eight bytes
@@ -59,7 +60,9 @@ impl Scene {
                 low: shown.low,
                 size: shown.size,
                 wrap: [texture.wrap_u, texture.wrap_v],
-                ..TexturePart::default()
+                aspect: shown.aspect,
+                is_ellipse: shown.is_ellipse,
+                divisor: 1.0,
             },
         })
     }
@@ -185,65 +188,51 @@ struct Layers {
     /// Textures that are loaded whole.
     whole: HashSet<u32>,
     made: Vec<SceneLightTexture>,
-    known: HashMap<Key, u32>,
+    /// By what they show, and the form of the lights: whether they are ellipses, and half octaves of their
+    /// aspect.
+    known: HashMap<(Key, bool, i32), u32>,
 }
 
 impl Layers {
     /// Gives a light the texture that shows `rectangle`, or says why there is none.
     fn show_to(&mut self, light: &mut Light, rectangle: &Rectangle) -> Result<(), &'static str> {
-        light.texture = Some(match light.shape {
-            LightShape::Disk { .. } => self.show_upright(rectangle)?,
-            _ => self.show(rectangle, light)?,
-        });
-        Ok(())
-    }
-
-    /// The texture of a disk that shows the whole of `rectangle`, or why there is none.
-    fn show_upright(&mut self, rectangle: &Rectangle) -> Result<LightTexture, &'static str> {
-        let (low, size) = (rectangle.low, rectangle.high - rectangle.low);
-        let upright = |first: &DVec2| (*first - low).abs().cmplt(size * 0.5).all();
-        if !rectangle.uvs.first().is_some_and(upright) {
-            return Err("its texture is mirrored");
-        }
-        let new = SceneLightTexture { texture: rectangle.texture, low, size };
-        Ok(LightTexture { layer: self.layer(rectangle.key(), new)?, uvs: vec![] })
-    }
-
-    /// The layer of a rectangle that is shown whole: one that is known, or a new one.
-    fn layer(&mut self, key: Key, new: SceneLightTexture) -> Result<u32, &'static str> {
-        if let Some(layer) = self.known.get(&key) {
-            return Ok(*layer);
-        }
-        if self.made.len() == MAX_LIGHT_TEXTURES {
-            return Err("there are too many light textures");
-        }
-        let layer = self.made.len() as u32;
-        self.made.push(new);
-        self.known.insert(key, layer);
-        Ok(layer)
-    }
-
-    /// The texture of a light that shows `rectangle`, or why there is none.
-    fn show(&mut self, rectangle: &Rectangle, light: &Light) -> Result<LightTexture, &'static str> {
+        let is_ellipse = matches!(light.shape, LightShape::Disk { .. });
         // Find the layer, or make one
         let mut key = rectangle.key();
         let (mut low, mut size) = (rectangle.low, rectangle.high - rectangle.low);
-        if self.whole.contains(&rectangle.texture) && rectangle.is_inside() {
+        if is_ellipse {
+            let upright = |first: &DVec2| (*first - low).abs().cmplt(size * 0.5).all();
+            if !rectangle.uvs.first().is_some_and(upright) {
+                return Err("its texture is mirrored");
+            }
+        } else if self.whole.contains(&rectangle.texture) && rectangle.is_inside() {
             (low, size) = (DVec2::ZERO, DVec2::ONE);
             key = Key::of(rectangle.texture, low, size);
         }
-        let known = self.known.get(&key).copied();
-        let new = SceneLightTexture { texture: rectangle.texture, low, size };
-        let SceneLightTexture { low, size, .. } = known.map_or(new, |layer| self.made[layer as usize]);
 
         // Map the light onto it
         let uvs = rectangle.uvs.iter().map(|uv| ((*uv - low) / size).clamp(DVec2::ZERO, DVec2::ONE));
-        let mut texture = LightTexture { layer: known.unwrap_or_default(), uvs: uvs.collect() };
-        let with_texture = Light { texture: Some(texture.clone()), ..light.clone() };
-        if with_texture.validate().is_err() {
+        let uvs = if is_ellipse { vec![] } else { uvs.collect() };
+        let mut shown = Light { texture: Some(LightTexture { layer: 0, uvs }), ..light.clone() };
+        if shown.validate().is_err() {
             return Err("its texture cannot be mapped");
         }
-        texture.layer = self.layer(key, new)?;
-        Ok(texture)
+        let aspect = TexturePart::default().shown_by(&shown).aspect;
+        let key = (key, is_ellipse, (2.0 * aspect.log2()).round() as i32);
+        let layer = self.made.len() as u32;
+        let layer = match self.known.entry(key) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(_) if self.made.len() == MAX_LIGHT_TEXTURES => {
+                return Err("there are too many light textures");
+            }
+            Entry::Vacant(new) => {
+                let texture = rectangle.texture;
+                self.made.push(SceneLightTexture { texture, low, size, aspect, is_ellipse });
+                *new.insert(layer)
+            }
+        };
+        shown.texture.iter_mut().for_each(|texture| texture.layer = layer);
+        light.texture = shown.texture;
+        Ok(())
     }
 }

@@ -194,6 +194,10 @@ pub struct SceneLightTexture {
     pub low: DVec2,
     /// Width and height, in the texture's coordinates; both are positive.
     pub size: DVec2,
+    /// [`arealight::TexturePart::aspect`] of the first light that shows it.
+    pub aspect: f32,
+    /// A disk or ellipse shows it.
+    pub is_ellipse: bool,
 }
 
 /// A decoded image.

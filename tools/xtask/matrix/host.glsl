@@ -87,8 +87,8 @@ vec4 arealight_bridge_profile(uint row) {
 #endif
 
 #ifndef WITHOUT_arealight_bridge_light_texture
-vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level) {
-    return textureLod(LIGHT_TEXTURES, vec3(coordinate, float(layer)), level).rgb;
+vec4 arealight_bridge_light_texture(uint layer, uint part, vec2 coordinate, float level) {
+    return textureLod(LIGHT_TEXTURES, vec3(coordinate, float(4u * layer + part)), level);
 }
 #endif
 
@@ -151,8 +151,7 @@ vec3 shade(int first) {
 #if AREALIGHT_LIGHT_TEXTURES
     polygon.image = ArealightImage(counts.w, numbers[first + 10].xyz, numbers[first + 11].xyz,
                                    numbers[first + 12].xyz,
-                                   numbers[first + 13].xy, numbers[first + 13].zw);
-    polygon.is_quad = two_sided;
+                                   numbers[first + 13].xy, numbers[first + 13].zw, numbers[first + 12].w);
 #endif
     sum += arealight_radiance(point, polygon);
 #endif
@@ -169,7 +168,6 @@ vec3 shade(int first) {
     shaped.polygon.two_sided = two_sided;
 #if AREALIGHT_LIGHT_TEXTURES
     shaped.polygon.image.layer = counts.w;
-    shaped.polygon.is_quad = two_sided;
 #endif
     shaped.radiance = radiance;
     shaped.profile = counts.w;

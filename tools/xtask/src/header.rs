@@ -131,7 +131,7 @@ fn layouts() -> [Layout; 26] {
         ArealightTextureSetup { memory, memory_offset, level_sets, level_set_count, reserved, command_buffer }
         ArealightTextureUpdate {
             source_set, part_low, part_size, layer, source_width, source_height, decode_srgb, wrap_u, wrap_v,
-            divisor, reserved,
+            divisor, aspect, is_ellipse, reserved,
         }
     }
 }

@@ -14,7 +14,7 @@ const NEEDED: [(&str, &[&str]); 3] = [
         &[
             "spirv/shade.spv",
             "spirv/texture_load.spv",
-            "spirv/texture_blur.spv",
+            "spirv/texture_kernel.spv",
             "spirv/manifest.json",
             "tables/ggx.f32",
         ],

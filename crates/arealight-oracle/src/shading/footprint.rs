@@ -1,213 +1,99 @@
-//! What a lobe sees of an image by a few lookups in its pyramid: the float64 twins of `footprint.glsl`, and
-//! the filter of Heitz et al. 2016 as a yardstick.
+//! What a lobe sees of an image by lookups in its pyramid: the float64 twin of `footprint.glsl`.
 
 use super::shown::box_coordinate;
-use crate::polygon::vector_form_factor;
+use crate::texture::Pyramid;
+use arealight::pyramid::FINEST_HEIGHT;
 use arealight::{Footprint, TextureMap};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, DVec4};
 
-/// How an image is looked up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Filter {
-    /// Heitz et al. 2016: once, at the foot of the perpendicular to the image's plane, with the plane's
-    /// distance `r` as the only measure of the blur, `r / sqrt(2 A)`.
-    Article,
-    /// A quality level.
-    Level(Footprint),
+/// Where A and B are looked up, and how they are weighed: `ArealightImagePlace`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// Of the layer.
+    pub coordinate: DVec2,
+    /// In units in which the light's area is 1.
+    pub height: f64,
+    /// Of A.
+    pub weight: f64,
+    /// Of B along rows and columns.
+    pub slope: DVec2,
+    /// The least of the sum over A: below it A fills the sum up.
+    pub least: f64,
 }
 
-/// A textured light, in the cosine space of a lobe.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LobeSpaceLight {
-    /// The outline, not clipped.
-    pub vertices: Vec<DVec3>,
-    /// The middle of its area.
-    pub center: DVec3,
-    /// Where the image is.
-    pub map: TextureMap,
-    /// Texels of the light's box in both directions: the content's times the box's extent.
-    pub texels: DVec2,
-    /// Normals of half spaces that limit what is seen, in addition to the lobe's.
-    pub horizons: Vec<DVec3>,
-    /// Whether the outline is a convex quad (`LightShape::is_convex_quad`); others are split into triangles.
-    pub convex_quad: bool,
-}
+/// From this cotangent of the plane's angle down a horizon moves the place.
+const STEEP: f64 = 1.256;
 
-/// The lobe's integral of the image over the light, signed as form factors are. `lookup` gives the image at a
-/// texture coordinate, blurred by a standard deviation in units of the root of the box's area, in a metric in
-/// which texels are as long in both directions: [`crate::texture::Pyramid::blurred`].
-pub fn filtered(filter: Filter, light: &LobeSpaceLight, lookup: impl Fn(DVec2, f64) -> DVec3) -> DVec3 {
-    let whole = Part { low: DVec2::ZERO, high: DVec2::ONE, parts: 1.0 };
-    let lookup = |place: DVec2, sigma: f64| lookup(light.map.low + light.map.size * place, sigma);
-    match filter {
-        Filter::Article => {
-            let (form_factor, _) = light.seen(&light.vertices);
-            let normal = light.normal();
-            let foot = normal * (normal.dot(light.map.corner) / normal.length_squared());
-            let sigma = foot.length() / (2.0 * normal.length()).sqrt();
-            lookup(whole.clamp(box_coordinate(&light.map, foot)), sigma) * form_factor
-        }
-        Filter::Level(Footprint::Round) => {
-            let (form_factor, hit) = light.seen(&light.vertices);
-            let square = hit.length_squared();
-            let sigma = (square / (WHOLE.bump * light.normal().length() + WHOLE.end * square)).sqrt();
-            lookup(whole.clamp(box_coordinate(&light.map, hit)), sigma) * form_factor
-        }
-        Filter::Level(Footprint::Ellipse) => {
-            let taps = [-1.363, -0.378, 0.378, 1.363];
-            light.part(&light.vertices, &whole, &taps, &lookup)
-        }
-        Filter::Level(Footprint::Split) => light.parts(4, &lookup),
-    }
-}
-
-/// The constants of a footprint. Found by search over `shading::poses`, through the pyramid.
-struct Shape {
-    /// The lobe's bump: its variance is the squared distance to the point seen, over this.
-    bump: f64,
-    /// Where the light or its part ends: the inverse of the largest variance, in its size. That of an even
-    /// spread is 12; a whole light's image is mirrored at its ends, so that a wider blur is more even.
-    end: f64,
-    /// How much blurrier taps are than they are apart.
-    overlap: f64,
-}
-
-/// Of a whole light.
-const WHOLE: Shape = Shape { bump: 1.5, end: 6.0, overlap: 1.15 };
-
-/// Of one of the parts, which mostly see a slope of the bump.
-const SPLIT: Shape = Shape { bump: 2.0, end: 10.0, overlap: 1.5 };
-
-/// The end of parts far away: Gaussians of half their distance add up to an even blur to a hundredth.
-const SPLIT_AFAR: f64 = 4.0;
-
-/// A part of a light in box coordinates, one of `parts` a side.
-struct Part {
-    low: DVec2,
-    high: DVec2,
-    parts: f64,
-}
-
-impl Part {
-    /// The nearest place; `low` for NaN.
-    fn clamp(&self, place: DVec2) -> DVec2 {
-        let clamp = |x: f64, low: f64, high: f64| if x > low { x.min(high) } else { low };
-        DVec2::new(clamp(place.x, self.low.x, self.high.x), clamp(place.y, self.low.y, self.high.y))
-    }
-
-    /// The place where one beyond an end is mirrored there, as images are.
-    fn mirror(&self, place: DVec2) -> DVec2 {
-        let from_low = self.low + (place - self.low).abs();
-        self.clamp(self.high - (self.high - from_low).abs())
-    }
-}
-
-impl LobeSpaceLight {
-    fn normal(&self) -> DVec3 {
-        self.map.axis_u.cross(self.map.axis_v)
-    }
-
-    /// The signed form factor of an outline, and the point of the plane that its light comes from.
-    fn seen(&self, outline: &[DVec3]) -> (f64, DVec3) {
-        let mut clipped = outline.to_vec();
-        for horizon in &self.horizons {
-            clipped = above(&clipped, *horizon);
-        }
-        let direction = vector_form_factor(&clipped);
-        let normal = self.normal();
-        let time = normal.dot(self.map.corner) / normal.dot(direction);
-        (direction.z, if time.is_finite() { direction * time } else { DVec3::ZERO })
-    }
-
-    /// Taps along the longer axis of the footprint; the part's form factor times their mean.
-    fn part(
-        &self,
-        outline: &[DVec3],
-        part: &Part,
-        taps: &[f64],
-        lookup: &impl Fn(DVec2, f64) -> DVec3,
-    ) -> DVec3 {
-        let (form_factor, hit) = self.seen(outline);
-        if form_factor == 0.0 {
-            return DVec3::ZERO;
-        }
-        let place = part.clamp(box_coordinate(&self.map, hit));
-        let shape = if part.parts > 1.0 { SPLIT } else { WHOLE };
-        // The inverse of the covariance, in the metric of texels: of the lobe's bump, and of the part's end
-        let stretch = (self.texels.x / self.texels.y).sqrt();
-        let (u, v) = (self.map.axis_u / stretch, self.map.axis_v * stretch);
-        let bump = shape.bump / hit.length_squared().max(f64::MIN_POSITIVE);
-        // Parts that are seen from afar must add up to an even blur
-        let distance = hit.length_squared() / self.normal().length();
-        let far = if part.parts > 1.0 { 1.0 - 1.0 / (1.0 + distance * distance / 16.0) } else { 0.0 };
-        let end = (shape.end + far * (SPLIT_AFAR - shape.end)) * part.parts * part.parts;
-        let (xx, yy) =
-            (bump * u.dot(u) + end / (stretch * stretch), bump * v.dot(v) + end * stretch * stretch);
-        let xy = bump * u.dot(v);
-        // Its eigenvalues, and the direction of the smaller one
-        let (mean, skew) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-        let spread = skew.hypot(xy);
-        let largest = mean + spread;
-        let smallest = ((xx * yy - xy * xy) / largest).max(1e-6 * largest);
-        let axis = if skew < 0.0 { DVec2::new(spread - skew, -xy) } else { DVec2::new(-xy, spread + skew) };
-        let axis = axis.normalize_or_zero() / DVec2::new(stretch, stretch.recip());
-        // Blur what one tap stands for, and lay them as far apart as makes up for the rest
-        let (major, minor) = (smallest.recip(), largest.recip());
-        let share = (shape.overlap / taps.len() as f64).powi(2);
-        let variance = major.min(minor.max(share * major));
-        let step = axis * (major - variance).sqrt();
-        let tap = |offset: &f64| lookup(part.mirror(place + step * *offset), variance.sqrt());
-        taps.iter().map(tap).sum::<DVec3>() * (form_factor / taps.len() as f64)
-    }
-
-    /// Two taps for each part: of a quad, or of the triangles about the center.
-    fn parts(&self, parts: u32, lookup: &impl Fn(DVec2, f64) -> DVec3) -> DVec3 {
-        if self.convex_quad {
-            let vertex = |i: usize| self.vertices[i.min(self.vertices.len() - 1)];
-            return self.quad(&[vertex(0), vertex(1), vertex(2), vertex(3)], parts, parts, lookup);
-        }
-        let next = self.vertices.iter().cycle().skip(1);
-        let triangle =
-            |(a, b): (&DVec3, &DVec3)| self.quad(&[self.center, *a, *b, *b], parts / 2, parts, lookup);
-        self.vertices.iter().zip(next).map(triangle).sum()
-    }
-
-    /// A quad cut into `count` by `count`.
-    fn quad(
-        &self,
-        quad: &[DVec3; 4],
-        count: u32,
-        parts: u32,
-        lookup: &impl Fn(DVec2, f64) -> DVec3,
-    ) -> DVec3 {
-        let corner = |x: u32, y: u32| {
-            let (s, t) = (f64::from(x) / f64::from(count), f64::from(y) / f64::from(count));
-            quad[0].lerp(quad[1], s).lerp(quad[3].lerp(quad[2], s), t)
+impl Place {
+    /// That of an image in a lobe's cosine space, whose box is all of the layer.
+    pub fn new(footprint: Footprint, map: &TextureMap) -> Self {
+        let cross = map.axis_u.cross(map.axis_v);
+        let area = cross.length();
+        let toward = cross / area * map.corner.dot(cross).signum();
+        let height = map.corner.dot(toward);
+        let rise = (1.0 - toward.z * toward.z).max(1e-12).sqrt();
+        let up = (DVec3::Z - toward * toward.z) / rise;
+        let s = toward.z / rise;
+        let corners =
+            [0.0, map.axis_u.z, map.axis_v.z, map.axis_u.z + map.axis_v.z].map(|z| z + map.corner.z);
+        let [lowest, highest] =
+            [f64::min, f64::max].map(|pick| corners.into_iter().reduce(pick).unwrap_or(0.0));
+        let below = (-10.0 * lowest / highest.max(1e-30)).clamp(0.0, 1.0);
+        let turned = below.max((1.0 - 1.75 * s).clamp(0.0, 1.0));
+        let turned = if footprint == Footprint::Mips { 0.0 } else { turned };
+        let v = (STEEP - s).max(0.0);
+        let moved = turned * 0.83 * v * v / (v + 0.653);
+        let cut = if s > STEEP {
+            DVec2::new(s, 1.0)
+        } else {
+            DVec2::new(1.0, STEEP.recip() - 0.045 * v / (v + 1.438))
         };
-        let mut sum = DVec3::ZERO;
-        for cell in 0..count * count {
-            let (x, y) = (cell % count, cell / count);
-            let outline = [corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)];
-            let places = outline.map(|corner| box_coordinate(&self.map, corner));
-            let low = places.into_iter().fold(DVec2::INFINITY, DVec2::min);
-            let high = places.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
-            sum += self.part(&outline, &Part { low, high, parts: f64::from(parts) }, &[-1.0, 1.0], lookup);
+        let weights = DVec2::new(toward.z, rise).lerp(cut.normalize_or(DVec2::X), turned);
+        Self {
+            coordinate: box_coordinate(map, height * (toward + moved * up)),
+            height: height / area.sqrt() * (1.0 + (0.963 * moved).powi(2)).sqrt(),
+            weight: weights.x,
+            slope: weights.y / area.sqrt() * DVec2::new(up.dot(map.axis_u), up.dot(map.axis_v)),
+            least: 0.03 + 0.27 * below,
         }
-        sum
+    }
+
+    /// The sum over A and B, of colours and of what is covered.
+    fn weighed(&self, [a, b_u, b_v]: [DVec4; 3]) -> DVec4 {
+        let slope = self.slope.x * b_u + self.slope.y * b_v;
+        let most = (self.weight - DVec4::W * self.least) * a / (-slope).max(DVec4::splat(1e-30));
+        self.weight * a + most.min_element().min(1.0) * slope
     }
 }
 
-/// The part of a polygon on the side of `normal`.
-fn above(polygon: &[DVec3], normal: DVec3) -> Vec<DVec3> {
-    let mut kept = Vec::with_capacity(polygon.len() + 2);
-    for (a, b) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
-        let (height_a, height_b) = (normal.dot(*a), normal.dot(*b));
-        if height_a >= 0.0 {
-            kept.push(*a);
-        }
-        if height_a * height_b < 0.0 {
-            kept.push(a.lerp(*b, height_a / (height_a - height_b)));
-        }
+/// A layer's coordinate where A and B are.
+fn kernel_coordinate(place: DVec2) -> DVec2 {
+    let along = |x: f64| {
+        let outside = (x - 0.5).abs() - 0.5;
+        let side = 0.25 + 0.25 * outside / (outside + 0.5);
+        if outside > 0.0 { 0.5 + side.copysign(x - 0.5) } else { 0.25 + 0.5 * x }
+    };
+    DVec2::new(along(place.x), along(place.y))
+}
+
+/// The mean colour that a lobe sees of an image whose box is all of the layer, by Lambert's lobe.
+pub fn seen(footprint: Footprint, map: &TextureMap, pyramid: &Pyramid) -> DVec3 {
+    let mut place = Place::new(footprint, map);
+    let height = place.height * f64::from(pyramid.size().side(0));
+    let inside = place.coordinate.clamp(DVec2::ZERO, DVec2::ONE);
+    if footprint == Footprint::Mips {
+        let color = pyramid.lookup(0, inside, (6.0_f64.sqrt() * height).max(1.0).log2());
+        return color.truncate() / color.w;
     }
-    kept
+    let height = height / map.longer();
+    let level = (height / FINEST_HEIGHT).max(1.0).log2();
+    place.slope *= (FINEST_HEIGHT * f64::from(pyramid.size().side(0)) / height).min(1.0);
+    let coordinate = kernel_coordinate(place.coordinate);
+    let mut sum = place.weighed([1, 2, 3].map(|layer| pyramid.lookup(layer, coordinate, level)));
+    if height < FINEST_HEIGHT {
+        // From the finest level on to the image itself
+        let sharp = pyramid.lookup(0, inside, height.max(1.0).log2());
+        sum = (sharp * (sum.w / sharp.w)).lerp(sum, height / FINEST_HEIGHT);
+    }
+    sum.truncate().max(DVec3::ZERO) / sum.w
 }

@@ -1,7 +1,6 @@
 //! Families of poses of a textured light, and how far off a footprint may be on them: what tests and
 //! `arealight bench textures` judge by.
 
-use super::footprint::Filter;
 use crate::material::Surface;
 use crate::polygon::transformed_form_factor;
 use crate::stream::Stream;
@@ -66,6 +65,12 @@ impl Pose {
         } else {
             table.lookup(self.surface.alpha.sqrt(), self.view.z).albedo
         }
+    }
+
+    /// How many times as wide as high the light is.
+    pub fn aspect(&self) -> f64 {
+        let [a, b, _, d] = self.vertices;
+        a.distance(b) / a.distance(d)
     }
 
     /// The light, of radiance 1, with the whole of a layer.
@@ -205,21 +210,15 @@ impl Bar {
         found.rmse <= self.rmse && found.median <= self.median
     }
 
-    /// That of a level on a family, with pictures such as [`crate::texture::Texture::checker`], `gradient`
+    /// That of the kernel on a family, with pictures such as [`crate::texture::Texture::checker`], `gradient`
     /// and `noise`. There is none at the horizon, where what is seen of a light changes within a footprint,
     /// and none for a yardstick.
-    pub fn of(filter: Filter, family: Family) -> Option<Self> {
-        let Filter::Level(level) = filter else { return None };
-        let [sharp, rough, diffuse] = match level {
-            Footprint::Round => [(12.0, 6.0), (7.5, 5.5), (9.0, 6.0)],
-            Footprint::Ellipse => [(7.0, 4.5), (6.5, 4.5), (9.0, 6.0)],
-            Footprint::Split => [(6.5, 2.2), (2.2, 1.0), (3.0, 1.0)],
-        };
-        let (rmse, median) = match family {
-            Family::Sharp => sharp,
-            Family::Rough => rough,
-            Family::Horizon => return None,
-            Family::Diffuse => diffuse,
+    pub fn of(footprint: Footprint, family: Family) -> Option<Self> {
+        let (rmse, median) = match (footprint, family) {
+            (Footprint::Mips, _) | (_, Family::Horizon) => return None,
+            (Footprint::Kernel, Family::Sharp) => (7.5, 2.5),
+            (Footprint::Kernel, Family::Rough) => (4.0, 1.0),
+            (Footprint::Kernel, Family::Diffuse) => (2.5, 1.0),
         };
         Some(Self { rmse, median })
     }

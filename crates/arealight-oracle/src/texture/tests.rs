@@ -1,7 +1,8 @@
-//! Lookup, blur and pyramid against their definitions.
+//! Lookup and pyramid against their definitions.
 
 use super::*;
 use arealight::PyramidSize;
+use glam::DVec4;
 
 fn random_texture(width: usize, height: usize) -> Texture {
     Texture::from_fn(width, height, |x, y| {
@@ -64,81 +65,73 @@ fn smaller_ones_are_means_under_a_tent() {
 }
 
 #[test]
-fn a_blur_is_the_integral_of_the_gaussian() {
-    let texture = random_texture(6, 4);
-    for (u, v, sigma) in [(0.3, 0.6, 0.03), (0.02, 0.9, 0.2), (1.1, 0.5, 0.35), (0.4, 0.4, 0.002)] {
-        // A midpoint rule over eight deviations; beyond the kinks its error falls with the square of the
-        // step: 1e-5
-        let steps = 1200;
-        let (mut sum, mut weight) = (DVec3::ZERO, 0.0);
-        let place = |i: usize| ((i as f64 + 0.5) / steps as f64 * 2.0 - 1.0) * 8.0;
-        for i in 0..steps {
-            for j in 0..steps {
-                let (x, y) = (place(i), place(j));
-                let gaussian = (-0.5 * (x * x + y * y)).exp();
-                let place = DVec2::new(u + sigma * x, v + sigma * y);
-                sum += texture.sample(place.map(mirrored_at_the_edges)) * gaussian;
-                weight += gaussian;
+fn a_pyramid_of_one_colour_sees_as_much_as_it_covers() {
+    let color = DVec3::new(0.3, 4.0, 65_504.0);
+    let size = PyramidSize::new(64).unwrap();
+    for is_ellipse in [false, true] {
+        let pyramid = Pyramid::new(&Texture::from_fn(1, 1, |_, _| color), size, 2.0, is_ellipse);
+        for (layer, level) in (0..4).flat_map(|layer| (0..size.levels()).map(move |level| (layer, level))) {
+            let texels = pyramid.level(layer, level);
+            assert_eq!(texels.len() as u32, size.side(level).pow(2));
+            for texel in texels {
+                let off = (texel.truncate() / color - texel.w).abs().max_element();
+                assert!(off < 1e-12, "{layer}, {level}: {texel}");
             }
         }
-        let grid = Blur::new(&texture, &[0.5, u], &[v, 0.1], DVec2::splat(sigma));
-        let off = (grid.at(1, 0) - sum / weight).abs().max_element();
-        assert!(off < 1e-5, "{u} {v}, {sigma}: {off}");
-        assert_eq!(grid.values().len(), 4);
+        // From afar all of it
+        let area = if is_ellipse { std::f64::consts::FRAC_PI_4 } else { 1.0 };
+        let far = pyramid.lookup(1, DVec2::splat(0.5), 99.0).w;
+        assert!((far - area).abs() < 0.01, "{far}");
     }
-    let sharp = Blur::new(&texture, &[0.3], &[0.6], DVec2::ZERO).at(0, 0);
-    assert!((sharp - texture.sample(DVec2::new(0.3, 0.6))).abs().max_element() < 1e-14);
-}
-
-/// A coordinate where those beyond 0 to 1 are mirrored, without end.
-fn mirrored_at_the_edges(coordinate: f64) -> f64 {
-    let within = coordinate.rem_euclid(2.0);
-    within.min(2.0 - within)
 }
 
 #[test]
-fn a_pyramid_of_one_colour_has_it_everywhere() {
-    let color = DVec3::new(0.3, 4.0, 65_504.0);
-    let size = PyramidSize::new(128).unwrap();
-    let pyramid = Pyramid::new(&Texture::from_fn(1, 1, |_, _| color), size);
-    for level in 0..size.levels() {
-        let image = pyramid.level(level);
-        assert_eq!([image.width() as u32, image.height() as u32], [size.side(level); 2]);
-        // The kernels are rounded to float32
-        for texel in image.texels() {
-            assert!(((*texel - color) / color).abs().max_element() < 1e-6);
-        }
-    }
+fn what_is_seen_of_a_white_image_is_its_form_factor() {
+    // Lambert, the light parallel: the form factor, and half a light's that stands upright beside
+    let pyramid = Pyramid::new(&random_texture(1, 1), PyramidSize::new(64).unwrap(), 1.0, false);
+    let height = pyramid.size().height(3);
+    let corner = 0.5 / height;
+    let slant = (1.0 + corner * corner).sqrt();
+    let expected = 4.0 / (2.0 * std::f64::consts::PI) * 2.0 * (corner / slant) * (corner / slant).atan();
+    let scale = 1.0 + std::f64::consts::PI * height * height;
+    let found = pyramid.lookup(1, DVec2::splat(0.5), 3.0).w / scale;
+    // Between nodes a third of a height apart
+    assert!((found / expected - 1.0).abs() < 0.05, "{found} {expected}");
+    assert!(pyramid.lookup(2, DVec2::splat(0.5), 3.0).w.abs() < 1e-12, "B is odd");
 }
 
 #[test]
 fn level_zero_is_the_image() {
     let texture = random_texture(64, 64);
-    let pyramid = Pyramid::new(&texture, PyramidSize::new(64).unwrap());
-    assert_eq!(pyramid.size().side(0), 64);
+    let pyramid = Pyramid::new(&texture, PyramidSize::new(64).unwrap(), 1.0, false);
     for uv in [DVec2::new(0.31, 0.77), DVec2::ZERO, DVec2::ONE, DVec2::new(0.9, -0.08)] {
-        assert!((pyramid.lookup(uv, 0.0) - texture.sample(uv)).abs().max_element() < 1e-13, "{uv}");
+        let off = (pyramid.lookup(0, uv, 0.0).truncate() - texture.sample(uv)).abs().max_element();
+        assert!(off < 1e-13, "{uv}");
     }
     // Clamped at both ends, also where no level is named
     let middle = DVec2::splat(0.5);
-    assert_eq!(pyramid.lookup(middle, -1.0), pyramid.lookup(middle, 0.0));
-    assert_eq!(pyramid.lookup(middle, 99.0), pyramid.lookup(middle, 4.0));
-    assert_eq!(pyramid.lookup(middle, f64::NAN), pyramid.lookup(middle, 0.0));
+    assert_eq!(pyramid.lookup(0, middle, -1.0), pyramid.lookup(0, middle, 0.0));
+    assert_eq!(pyramid.lookup(0, middle, 99.0), pyramid.lookup(0, middle, 6.0));
+    assert_eq!(pyramid.lookup(0, middle, f64::NAN), pyramid.lookup(0, middle, 0.0));
 }
 
 #[test]
-fn every_level_has_the_mean_of_an_image_of_any_aspect() {
-    for (width, height) in [(64, 64), (70, 40), (128, 64), (48, 144), (512, 32), (9, 288), (1, 1), (3, 2)] {
+fn from_afar_an_image_of_any_aspect_shows_its_mean() {
+    for (width, height) in [(64, 64), (70, 40), (48, 144), (512, 32), (9, 288), (1, 1), (3, 2)] {
         let texture = random_texture(width, height);
-        let pyramid = Pyramid::new(&texture, PyramidSize::for_image(width as u32, height as u32));
+        let size = PyramidSize::new(64).unwrap();
+        let pyramid = Pyramid::new(&texture, size, width as f64 / height as f64, false);
         let mean = texture.mean();
-        for level in 0..pyramid.size().levels() {
+        let mut found = vec![pyramid.lookup(1, DVec2::splat(0.5), 99.0)];
+        found.extend((0..size.levels()).map(|level| {
+            let texels = pyramid.level(0, level);
+            texels.iter().sum::<DVec4>() / texels.len() as f64
+        }));
+        for found in found {
             // Tents that reach beyond the edge count its texels for more: where sides don't divide the
             // layer's, by a part of a texel in as many as there are
-            assert!(
-                ((pyramid.level(level).mean() - mean) / mean).abs().max_element() < 0.02,
-                "{width} x {height}, {level}"
-            );
+            let off = (found.truncate() / found.w / mean - 1.0).abs().max_element();
+            assert!(off < 0.03, "{width} x {height}: {off}");
         }
     }
 }

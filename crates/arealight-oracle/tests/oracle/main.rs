@@ -10,7 +10,6 @@ mod half_vectors;
 mod ltsd;
 mod microsurface;
 mod polygon;
-mod pyramid;
 mod shading;
 mod sheen;
 mod sphere;

@@ -51,7 +51,7 @@ pub(super) fn content(name: &str) -> &'static str {
 }
 
 /// What bindings hold that are no planes.
-const BOUND: [(&str, &str); 21] = [
+const BOUND: [(&str, &str); 22] = [
     (
         "table_image",
         "LightTable::texels: 2D array, layer 0 matrix, layer 1 magnitudes, layer 2 Schlick's matrix, layers 3 \
@@ -115,6 +115,7 @@ const BOUND: [(&str, &str); 21] = [
     ),
     ("source", "the image: linear light or sRGB, in any format that is sampled as numbers (not integers)"),
     ("finer_level", "the level before, every layer (rgba16f)"),
+    ("all_levels", "every level and layer (rgba16f)"),
     ("out_level", "the level, every layer (rgba16f)"),
 ];
 

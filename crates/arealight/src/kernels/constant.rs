@@ -16,8 +16,6 @@ pub const SPECULAR_LOBES: u32 = 5;
 pub const LOBES: u32 = 6;
 /// [`crate::Footprint`].
 pub const FOOTPRINT: u32 = 7;
-/// Taps to a side of a level's kernel that are summed, from [`crate::PyramidSize::taps`] on.
-pub const RADIUS: u32 = 8;
 /// [`crate::gpu::TextureLoadConstants::steps`].
 pub const LOAD_STEPS: u32 = 9;
 /// [`crate::gpu::GpuShape`]'s kinds, or [`crate::gpu::GpuShape::ANY`].

@@ -22,7 +22,10 @@ struct ArealightDiskLight {
 #if AREALIGHT_LIGHT_TEXTURES
 // Where the image of a disk with these half axes is.
 ArealightImage arealight_disk_image(uint layer, vec3 axis_u, vec3 axis_v) {
-    return ArealightImage(layer, axis_v - axis_u, 2.0 * axis_u, -2.0 * axis_v, vec2(0.0), vec2(1.0));
+    float u = dot(axis_u, axis_u);
+    float v = dot(axis_v, axis_v);
+    float longer = sqrt(sqrt(max(u, v) / max(min(u, v), AREALIGHT_TINY)));
+    return ArealightImage(layer, axis_v - axis_u, 2.0 * axis_u, -2.0 * axis_v, vec2(0.0), vec2(1.0), longer);
 }
 #endif
 
@@ -66,12 +69,8 @@ vec3 arealight_image_average(mat3 space, ArealightLocalDisk local, vec3 vector) 
 #if AREALIGHT_LIGHT_TEXTURES
     if (AREALIGHT_HAS_TEXTURED_DISKS && local.image != AREALIGHT_NO_IMAGE) {
         vec3 center = space * local.center;
-        ArealightLobeImage image =
-            arealight_lobe_image(arealight_disk_image(local.image, local.axis_u, local.axis_v), center,
-                                 space);
-        image.end = AREALIGHT_ELLIPSE_IMAGE_END;
-        return arealight_footprint(image, arealight_ellipse_mean_direction(center, space * local.axis_u, space
-                                                                           * local.axis_v));
+        ArealightImage image = arealight_disk_image(local.image, local.axis_u, local.axis_v);
+        return arealight_footprint(arealight_lobe_image(image, center, space));
     }
 #endif
     return vec3(1.0);

@@ -4,7 +4,7 @@
 #include "arealight/form_factor/difference.glsl"
 #include "arealight/form_factor/outline.glsl"
 #include "arealight/lights/quad.glsl"
-#include "arealight/textures/split.glsl"
+#include "arealight/textures/footprint.glsl"
 
 // The host's bridge to the outlines of polygon and mesh lights: the position of vertex `index`, from its
 // light's center.
@@ -21,7 +21,6 @@ struct ArealightPolygonLight {
     bool two_sided;    // the back emits too (with AREALIGHT_TWO_SIDED)
 #if AREALIGHT_LIGHT_TEXTURES
     ArealightImage image;
-    bool is_quad;      // it is convex and has at most four vertices (AREALIGHT_FOOTPRINT_SPLIT alone)
 #endif
 };
 
@@ -34,8 +33,6 @@ struct ArealightLocalPolygon {
     float side;    // arealight_lit_side
 #if AREALIGHT_LIGHT_TEXTURES
     ArealightImage image;
-    vec3 normal;
-    bool is_quad;
 #endif
 };
 
@@ -49,8 +46,6 @@ bool arealight_to_local(ArealightPoint point, ArealightPolygonLight light, out A
                                     arealight_position_error(point.position));
 #if AREALIGHT_LIGHT_TEXTURES
     local.image = light.image;
-    local.normal = light.normal;
-    local.is_quad = light.is_quad;
 #endif
     return light.vertex_count != 0u && local.side != 0.0;
 }
@@ -207,67 +202,11 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalPolygon local) {
                                                  front);
 }
 
-#if AREALIGHT_LIGHT_TEXTURES
-
-// The sum of form factors times colours, and of form factors, of `count` by `count` parts of a part.
-vec4 arealight_split_sum(mat3 space, ArealightLocalPolygon local, ArealightLobeImage image,
-                         ArealightQuad quad, float count) {
-    ArealightPart whole = arealight_part(local.image, quad);
-    vec4 sum = vec4(0.0);
-    for (float y = 0.0; y < count; y += 1.0) {
-        for (float x = 0.0; x < count; x += 1.0) {
-            ArealightPart part = arealight_split_part(whole, vec2(x, y), count);
-            ArealightQuad quad_in_frame = arealight_quad_in_frame(local.to_frame, local.center, part.quad);
-            ArealightLocalQuad in_frame = ArealightLocalQuad(quad_in_frame, quad_in_frame, false,
-                                                             local.center, local.side);
-            if (arealight_cut_local(in_frame, local.to_frame, part.quad)) {
-                vec3 vector = arealight_vector_form_factor(space, in_frame);
-                float form_factor = arealight_form_factor(vector);
-                sum += form_factor * vec4(arealight_part_color(image, part, vector), 1.0);
-            }
-        }
-    }
-    return sum;
-}
-
-// The mean colour that a lobe sees of an image by parts of the light: those of a convex quad, or of the
-// triangles about the center of any other outline; those that run against the outline are subtracted again.
-vec3 arealight_split_color(mat3 space, ArealightLocalPolygon local, ArealightLobeImage image,
-                           float form_factor) {
-    vec4 sum = vec4(0.0);
-    if (local.is_quad) {
-        uint last = local.end - 1u;
-        ArealightQuad quad = ArealightQuad(arealight_bridge_vertex(local.first),
-                                           arealight_bridge_vertex(local.first + 1u),
-                                           arealight_bridge_vertex(min(local.first + 2u, last)),
-                                               arealight_bridge_vertex(last));
-        sum = arealight_split_sum(space, local, image, quad, AREALIGHT_PARTS);
-    } else {
-        vec3 from = arealight_bridge_vertex(local.end - 1u);
-        for (uint index = local.first; index < local.end; index++) {
-            vec3 to = arealight_bridge_vertex(index);
-            bool against = dot(cross(from, to), local.normal) < 0.0;
-            ArealightQuad triangle = against ? ArealightQuad(vec3(0.0), to, to, from)
-                : ArealightQuad(vec3(0.0), from, to, to);
-            vec4 part = arealight_split_sum(space, local, image, triangle, 0.5 * AREALIGHT_PARTS);
-            sum += against ? -part : part;
-            from = to;
-        }
-    }
-    // The parts of a flat outline make up no more than all there is
-    return max(sum.rgb, vec3(0.0)) / max(max(sum.a, form_factor), 1e-30);
-}
-
-#endif
-
 vec3 arealight_image_average(mat3 space, ArealightLocalPolygon local, vec3 vector) {
 #if AREALIGHT_LIGHT_TEXTURES
     if (AREALIGHT_HAS_TEXTURED_POLYGONS && local.image.layer != AREALIGHT_NO_IMAGE) {
-        ArealightLobeImage image = arealight_lobe_image(local.image, space * local.center, space
-                                                        * local.to_frame);
-        return AREALIGHT_SPLITS_IMAGES ? arealight_split_color(space, local, image,
-                                                               arealight_form_factor(vector))
-                                       : arealight_footprint(image, vector);
+        return arealight_footprint(arealight_lobe_image(local.image, space * local.center, space
+                                                        * local.to_frame));
     }
 #endif
     return vec3(1.0);

@@ -6,20 +6,22 @@
 
 // What a lobe sees of the image that a light shows.
 //
-// A lobe in its cosine space weighs the points of the light's plane with (cosine of the lobe) x (cosine of
-// the light) / distance^2: a bump around a point, which we take for a Gaussian. So the image is blurred
-// beforehand, by ever wider Gaussians (arealight::pyramid in Rust), and looked up where the mean direction of
-// the clipped light meets its plane, at the level whose blur is that of the bump. With the distance d to that
-// point and the area A of the image in cosine space, in units where A is 1, the variance is
+// In a lobe's cosine space, with q the foot of the perpendicular from the point onto the light's plane and h
+// its length, a place x of the plane, from q, counts (c + b . x) h / (x^2 + h^2)^2: c + b . x is its height.
+// So the mean colour is a ratio of two linear forms,
 //
-//     d^2 / (1.5 A + 6 d^2)
+//     (c A + h b . B) of the image over the same of what the light covers,
+//     A = L * K, B = L * x K / h, K = h^2 / (pi (x^2 + h^2)^2)
 //
-// Heitz et al. 2016 (eq. 35) have r^2 / 2 with the distance r to the plane. The point where the mean
-// direction meets the plane is a better place than the plane's foot, and as the light ends, so must the
-// footprint: the widest is that of an even spread, nearly, as the image is mirrored at its ends. The bump is
-// longer than wide where the plane is seen at an angle; better quality levels fetch along its longer axis,
-// and split the light (split.glsl). The numbers were found by search, against the integral of image times
-// lobe: errors are in docs/textures.md.
+// with convolutions over the image, which is zero outside: K is that of Heitz et al. 2016 (eq. 35), B its
+// companion. Both are filtered beforehand for heights an octave apart, with coverage in alpha
+// (texture_kernel.comp), so three fetches are exact for a Lambert surface whose horizon does not cut the
+// light, but for the filter: 2 % of the mean, .5 % on images like noise. A lobe's kernel is not round on the
+// light as the filter's is. Where the horizon cuts, the weight would be negative below it: another place,
+// height and weight stand for what is above (arealight_image_place). Errors are in docs/textures.md.
+
+// The height of level 0, in texels along the layer's longer side.
+const float AREALIGHT_FINEST_HEIGHT = 6.0;
 
 // The layer of a light without an image.
 const uint AREALIGHT_NO_IMAGE = 0xffffffffu;
@@ -33,32 +35,27 @@ struct ArealightImage {
     vec3 axis_v; // along its columns
     vec2 low;    // texture coordinates of the box's corner
     vec2 size;   // and its extent in them
+    float longer; // side of the whole layer on the light, in roots of its area; at least 1
 };
 
 #if AREALIGHT_LIGHT_TEXTURES
 
-// The host's bridge to the light textures: layer `layer`, trilinear and clamped to the edge, at normalised
-// coordinates, level explicit; textureLod of an array image.
-vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level);
+// The host's bridge to the light textures: part `part` of layer `layer`, trilinear and clamped to the edge,
+// at normalised coordinates, level explicit; textureLod of an array image. Part 0 is the image with its mips,
+// 1 is A, 2 and 3 are B along rows and columns; with AREALIGHT_FOOTPRINT_MIPS there is part 0 alone.
+vec4 arealight_bridge_light_texture(uint layer, uint part, vec2 coordinate, float level);
 // Width and height of level 0, in texels.
 int arealight_bridge_light_texture_side();
-
-// ArealightLobeImage.end of lights that fill the box of their image, and of ellipses in its middle.
-const float AREALIGHT_IMAGE_END = 6.0;
-const float AREALIGHT_ELLIPSE_IMAGE_END = 10.0;
 
 // An image in a lobe's cosine space.
 struct ArealightLobeImage {
     uint layer;
     vec2 low;
     vec2 size;
+    float longer;
     vec3 corner; // from the shading point
-    vec3 axis_u;
+    vec3 axis_u; // of the whole layer
     vec3 axis_v;
-    vec3 normal;  // axis_u x axis_v
-    vec2 texels;  // of the box
-    float last;   // level
-    float end;    // inverse of the widest variance of a blur, in units of the box's area
 };
 
 // `center` is the light's, from the shading point in cosine space; `transform` takes offsets from the center
@@ -68,15 +65,10 @@ ArealightLobeImage arealight_lobe_image(ArealightImage image, vec3 center, mat3 
     seen.layer = image.layer;
     seen.low = image.low;
     seen.size = image.size;
-    seen.corner = center + transform * image.corner;
-    seen.axis_u = transform * image.axis_u;
-    seen.axis_v = transform * image.axis_v;
-    seen.normal = cross(seen.axis_u, seen.axis_v);
-    int side = arealight_bridge_light_texture_side();
-    seen.texels = float(side) * image.size;
-    // The last level is four texels wide
-    seen.last = float(findMSB(side) - 2);
-    seen.end = AREALIGHT_IMAGE_END;
+    seen.longer = image.longer;
+    seen.axis_u = transform * (image.axis_u / image.size.x);
+    seen.axis_v = transform * (image.axis_v / image.size.y);
+    seen.corner = center + transform * image.corner - image.low.x * seen.axis_u - image.low.y * seen.axis_v;
     return seen;
 }
 
@@ -85,109 +77,99 @@ vec2 arealight_clamp_coordinate(vec2 x, vec2 low, vec2 high) {
     return vec2(x.x > low.x ? min(x.x, high.x) : low.x, x.y > low.y ? min(x.y, high.y) : low.y);
 }
 
-// x where what is beyond low or high is mirrored there once; at most an end.
-vec2 arealight_mirror_coordinate(vec2 x, vec2 low, vec2 high) {
-    return arealight_clamp_coordinate(high - abs(high - low - abs(x - low)), low, high);
-}
-
-// The level of the pyramid whose blur is `square`, a variance in squares of level 0's texels, between two
-// levels; PyramidSize::level_of in Rust.
-float arealight_texture_level(float square, float last) {
-    const float TENT = 0.1666666667;    // variance that bilinear lookup adds, in texels
-    const float REGULAR = 0.8891666667; // of a level's blur and of bilinear lookup, in its own texels
-    const float FIRST = 4.0 * REGULAR - TENT;
-    if (!(square >= FIRST)) {
-        return square > 0.0 ? 3.0 * square / (FIRST + 2.0 * square) : 0.0;
-    }
-    float octaves = 0.5 * log2((square + TENT) / REGULAR);
-    float regular = last - 3.0;
-    float level = min(min(octaves, regular) + max(octaves - regular, 0.0) * 0.83687, last);
-    float fraction = fract(level);
-    return level - 0.2 * fraction * (1.0 - fraction);
-}
-
-// The image at box coordinates, blurred by `variance`, in units of the box's area.
-vec3 arealight_image_blurred(ArealightLobeImage image, vec2 box, float variance) {
-    float level = arealight_texture_level(variance * image.texels.x * image.texels.y, image.last);
-    return arealight_bridge_light_texture(image.layer, image.low + image.size * box, level);
-}
-
-// The point of the image's plane that the light comes from.
-struct ArealightPlaneHit {
-    vec2 box;     // its box coordinates, not clamped
-    float square; // its squared distance
+// Where A and B are looked up, and how they are weighed.
+struct ArealightImagePlace {
+    vec2 coordinate; // of the layer
+    float height;    // in units in which the layer's area is 1
+    float weight;    // of A
+    vec2 slope;      // of B
+    float least;     // of the sum over A
 };
 
-// `toward` is where the light comes from, a vector of any length, either way along it.
-ArealightPlaneHit arealight_plane_hit(ArealightLobeImage image, vec3 toward) {
-    // Meet the plane along the mean direction
-    vec3 direction = toward / max(arealight_max_component(toward), 1e-30);
-    float denominator = dot(direction, image.normal);
-    float reciprocal = abs(denominator) > 1e-30 ? 1.0 / denominator : 0.0;
-    ArealightPlaneHit hit;
-    hit.box = reciprocal * vec2(dot(direction, cross(image.axis_v, image.corner)),
-                                  dot(direction, cross(image.corner, image.axis_u)));
-    float t = dot(image.corner, image.normal) * reciprocal;
-    float square = t * t * dot(direction, direction);
-    hit.square = square < 1e30 ? square : 1e30;
-    return hit;
+// The place that stands for the clamped weight. With s = c / (|b| h) the unclamped one has the foot, h and
+// (s, 1); from s = 1.26 down the foot moves along b by Q h, and h grows. The rational functions were found by
+// search, against sums over what is above the horizon; they come in as the lowest corner goes below it.
+ArealightImagePlace arealight_image_place(ArealightLobeImage image) {
+    const float STEEP = 1.256;
+    vec3 normal = cross(image.axis_u, image.axis_v);
+    float area = max(sqrt(dot(normal, normal)), 1e-30);
+    float distance = dot(image.corner, normal);
+    float height = max(abs(distance) / area, 1e-30);
+    // How steep the plane is, and how the lobe's height rises over it
+    float cosine = (distance < 0.0 ? -normal.z : normal.z) / area;
+    float to_rise = inversesqrt(max(1.0 - cosine * cosine, 1e-12));
+    float s = cosine * to_rise;
+    float lowest = image.corner.z + min(image.axis_u.z, 0.0) + min(image.axis_v.z, 0.0);
+    float highest = image.corner.z + max(image.axis_u.z, 0.0) + max(image.axis_v.z, 0.0);
+    float below = clamp(-10.0 * lowest / max(highest, 1e-30), 0.0, 1.0);
+    float turned = AREALIGHT_FOOTPRINT == AREALIGHT_FOOTPRINT_MIPS ? 0.0
+        : max(below, clamp(1.0 - 1.75 * s, 0.0, 1.0));
+    float v = max(STEEP - s, 0.0);
+    float moved = turned * 0.83 * v * v / (v + 0.653);
+    float grown = 0.963 * moved;
+    vec2 cut = s > STEEP ? vec2(s, 1.0) : vec2(1.0, 1.0 / STEEP - 0.045 * v / (v + 1.438));
+    vec2 weights = mix(vec2(cosine, 1.0 / to_rise), cut * inversesqrt(dot(cut, cut)), turned);
+    // What has a vector of the plane's coordinates by dot products
+    vec3 to_u = cross(image.axis_v, normal) / (area * area);
+    vec3 to_v = cross(normal, image.axis_u) / (area * area);
+    float scale = inversesqrt(area);
+    ArealightImagePlace found;
+    found.coordinate = height * moved * to_rise * vec2(to_u.z, to_v.z)
+                     - vec2(dot(image.corner, to_u), dot(image.corner, to_v));
+    found.height = height * scale * sqrt(1.0 + grown * grown);
+    found.weight = weights.x;
+    found.slope = weights.y * scale * to_rise * vec2(image.axis_u.z, image.axis_v.z);
+    found.least = mix(0.03, 0.3, below);
+    return found;
 }
 
-// The footprint's ellipse, in units of the box's area: box coordinates that are stretched so that texels are
-// as long in both directions.
-struct ArealightFootprintEllipse {
-    vec2 axis;   // the longer one's direction, in box coordinates
-    float major; // variances
-    float minor;
-};
-
-// The inverse of the covariance is `bump` over the squared distance, of the lobe, and `end`, in units of the
-// box.
-ArealightFootprintEllipse arealight_footprint_ellipse(ArealightLobeImage image, float square, float bump,
-                                                      float end) {
-    float stretch = sqrt(image.texels.x / image.texels.y);
-    vec3 u = image.axis_u / stretch;
-    vec3 v = image.axis_v * stretch;
-    bump /= max(square, AREALIGHT_TINY);
-    float xx = bump * dot(u, u) + end / (stretch * stretch);
-    float yy = bump * dot(v, v) + end * (stretch * stretch);
-    float xy = bump * dot(u, v);
-    // Its eigenvalues, the smaller one by the determinant
-    float mean = 0.5 * (xx + yy);
-    float skew = 0.5 * (xx - yy);
-    float spread = sqrt(skew * skew + xy * xy);
-    float largest = mean + spread;
-    float smallest = max((xx * yy - xy * xy) / largest, 1e-6 * largest);
-    vec2 axis = skew < 0.0 ? vec2(spread - skew, -xy) : vec2(-xy, spread + skew);
-    ArealightFootprintEllipse ellipse;
-    ellipse.axis = axis * inversesqrt(dot(axis, axis) + AREALIGHT_TINY) / vec2(stretch, 1.0 / stretch);
-    ellipse.major = 1.0 / smallest;
-    ellipse.minor = 1.0 / largest;
-    return ellipse;
+// A layer's coordinate where A and B are: the image fills the middle half along each axis, and what is
+// outside, to infinity, the quarters beside it.
+float arealight_kernel_coordinate(float x) {
+    float outside = max(abs(x - 0.5) - 0.5, 0.0);
+    float side = 0.25 + 0.25 * outside / (outside + 0.5);
+    return outside > 0.0 ? 0.5 + (x < 0.5 ? -side : side) : 0.25 + 0.5 * x;
 }
 
-// The mean colour that a lobe sees of a light's image, `toward` being where the light comes from in its
-// cosine space: finite and not negative for any input, if the image is. One fetch, or four along the longer
-// axis.
-vec3 arealight_footprint(ArealightLobeImage image, vec3 toward) {
-    ArealightPlaneHit hit = arealight_plane_hit(image, toward);
-    vec2 box = arealight_clamp_coordinate(hit.box, vec2(0.0), vec2(1.0));
-    if (AREALIGHT_FOOTPRINT == AREALIGHT_FOOTPRINT_ROUND) {
-        float area = sqrt(dot(image.normal, image.normal));
-        return arealight_image_blurred(image, box, hit.square / (1.5 * area + image.end * hit.square));
+// The mean colour that a lobe sees of a light's image: finite and not negative for any input, if the image
+// is.
+vec3 arealight_footprint(ArealightLobeImage image) {
+    float side = float(arealight_bridge_light_texture_side());
+    ArealightImagePlace place = arealight_image_place(image);
+    vec2 inside = arealight_clamp_coordinate(place.coordinate, image.low, image.low + image.size);
+    float area = image.size.x * image.size.y;
+    if (area < 0.999) {
+        // Of a light that shows a piece of the layer the rest is not seen, from afar either
+        place.coordinate = inside;
+        place.height = min(place.height, 0.35 * sqrt(area));
     }
-    // The variance that the taps lack along the axis lies between them
-    ArealightFootprintEllipse ellipse = arealight_footprint_ellipse(image, hit.square, 1.5, image.end);
-    float variance = min(ellipse.major, max(ellipse.minor, 0.08265625 * ellipse.major));
-    vec2 step = sqrt(ellipse.major - variance) * ellipse.axis;
-    vec3 color = vec3(0.0);
-    for (int tap = 0; tap < 4; tap++) {
-        float offset = (tap & 1) == 0 ? 0.378 : 1.363;
-        vec2 place = box + step * (tap < 2 ? offset : -offset);
-        color += arealight_image_blurred(image, arealight_mirror_coordinate(place, vec2(0.0), vec2(1.0)),
-                                         variance);
+    float height = place.height * side;
+    if (AREALIGHT_FOOTPRINT == AREALIGHT_FOOTPRINT_MIPS) {
+        // The variance h^2 / 2 of eq. 35, by mips, whose texels have a twelfth
+        float level = log2(max(2.449490 * height, 1.0));
+        vec4 color = arealight_bridge_light_texture(image.layer, 0u, inside, level);
+        return color.rgb / max(color.a, 1e-30);
     }
-    return 0.25 * color;
+    height /= image.longer;
+    float level = log2(max(height, AREALIGHT_FINEST_HEIGHT) / AREALIGHT_FINEST_HEIGHT);
+    vec2 coordinate = vec2(arealight_kernel_coordinate(place.coordinate.x),
+                           arealight_kernel_coordinate(place.coordinate.y));
+    vec4 a = arealight_bridge_light_texture(image.layer, 1u, coordinate, level);
+    vec4 b_u = arealight_bridge_light_texture(image.layer, 2u, coordinate, level);
+    vec4 b_v = arealight_bridge_light_texture(image.layer, 3u, coordinate, level);
+    // Beyond the last level all of the image counts alike
+    place.slope *= min(AREALIGHT_FINEST_HEIGHT * side / height, 1.0);
+    // As much of the slope as leaves no colour below zero, and enough of what is covered
+    vec4 slope = place.slope.x * b_u + place.slope.y * b_v;
+    vec4 most = (place.weight - vec4(vec3(0.0), place.least)) * a / max(-slope, 1e-30);
+    vec4 sum = place.weight * a + min(min(min(most.x, most.y), min(most.z, most.w)), 1.0) * slope;
+    if (height < AREALIGHT_FINEST_HEIGHT) {
+        // From the finest level on to the image itself
+        vec4 sharp = arealight_bridge_light_texture(image.layer, 0u, inside, log2(max(height, 1.0)));
+        sum = mix(sharp * (sum.a / max(sharp.a, 1e-30)), sum, height / AREALIGHT_FINEST_HEIGHT);
+    }
+    vec3 color = sum.rgb / max(sum.a, 1e-30);
+    return mix(vec3(0.0), color, greaterThan(color, vec3(0.0)));
 }
 
 // Box coordinates of an offset from the light's center, in its plane.
@@ -206,7 +188,8 @@ vec2 arealight_image_coordinate(ArealightImage image, vec3 offset) {
 // The image itself at an offset from the light's center, in its plane.
 vec3 arealight_image_color(ArealightImage image, vec3 offset) {
     vec2 box = arealight_clamp_coordinate(arealight_image_coordinate(image, offset), vec2(0.0), vec2(1.0));
-    return arealight_bridge_light_texture(image.layer, image.low + image.size * box, 0.0);
+    vec4 color = arealight_bridge_light_texture(image.layer, 0u, image.low + image.size * box, 0.0);
+    return color.rgb / max(color.a, 1e-30);
 }
 
 #endif

@@ -3,7 +3,6 @@
 use super::reflection::{bound_variables, decoration, literal, member_name, module, offsets, pointee};
 use arealight::gpu;
 use arealight::kernels;
-use arealight::pyramid::MOST_TAPS;
 use arealight_tests::kernel::BLOCKERS;
 use arealight_tool_kernels as tool;
 use rspirv::dr::Module;
@@ -327,9 +326,13 @@ fn the_texture_kernels_constants_have_the_same_offsets() {
             layout!(gpu::TextureLoadConstants, first_texel, first_offset, stride, flags, layer, factor),
         ),
         (
-            &kernels::TEXTURE_BLUR,
-            "TextureBlurConstants",
-            vec![("weights".to_owned(), 0), ("first_layer".to_owned(), 4 * MOST_TAPS as u32)],
+            &kernels::TEXTURE_KERNEL,
+            "TextureKernelConstants",
+            ["layer", "level", "aspect", "is_ellipse"]
+                .map(str::to_owned)
+                .into_iter()
+                .zip((0..).step_by(4))
+                .collect(),
         ),
     ] {
         assert_offsets(&module(kernel), structure, &expected);

@@ -66,24 +66,24 @@ fn point(case: &SupportedCase, images: &mut Images) -> EvalPoint {
 /// The images that lights show.
 #[derive(Default)]
 pub struct Images {
-    known: Vec<Arc<Texture>>,
-}
-
-/// What the texels of an image are divided by, and its lights multiplied with.
-fn divisor(image: &Texture) -> f32 {
-    TexturePart::divisor_of(image.brightest() as f32)
+    known: Vec<(Arc<Texture>, TexturePart)>,
 }
 
 impl Images {
     /// Lets a light show an image: its layer is its number among all.
     pub fn show(&mut self, light: &mut Light, image: &Arc<Texture>, uvs: Vec<DVec2>) {
-        let known = self.known.iter().position(|known| Arc::ptr_eq(known, image));
+        light.texture = Some(LightTexture { layer: 0, uvs });
+        let divisor = TexturePart::divisor_of(image.brightest() as f32);
+        let mut part = TexturePart { divisor, ..TexturePart::default() }.shown_by(light);
+        // To a 64th of an octave, so that many lights don't need many
+        part.aspect = ((64.0 * part.aspect.log2()).round() / 64.0).exp2();
+        let known = self.known.iter().position(|known| Arc::ptr_eq(&known.0, image) && known.1 == part);
         let layer = known.unwrap_or_else(|| {
-            self.known.push(Arc::clone(image));
+            self.known.push((Arc::clone(image), part));
             self.known.len() - 1
         }) as u32;
-        light.texture = Some(LightTexture { layer, uvs });
-        light.radiance *= divisor(image);
+        light.texture.iter_mut().for_each(|texture| texture.layer = layer);
+        light.radiance *= divisor;
     }
 
     /// The answers of points, in their order, an image at a time: none depends on the others.
@@ -101,8 +101,9 @@ impl Images {
             for texture in shown.iter_mut().filter_map(|point| point.as_mut().texture.as_mut()) {
                 texture.layer = 0;
             }
-            let images: Vec<_> = image.map(|image| Arc::clone(&self.known[image])).into_iter().collect();
-            pictures::load(engine, &images, divisor)?;
+            let (images, parts): (Vec<_>, Vec<_>) =
+                image.map(|image| self.known[image].clone()).into_iter().unzip();
+            pictures::load(engine, &images, |index| parts[index])?;
             for (index, radiance) in indices.into_iter().zip(answer(engine, &shown)?) {
                 answers[index] = radiance;
             }

@@ -158,7 +158,7 @@ fn inspect_draws_the_pyramid_of_a_scene_and_of_images() {
     let card = inspect(&[&screen, "-o", "card.png"]);
     assert_eq!(
         (&card["size"], card["levels"].as_array().unwrap().len()),
-        (&serde_json::json!([512, 512]), 8)
+        (&serde_json::json!([512, 512]), 11)
     );
     assert!(card["texture"].as_str().unwrap().ends_with("'test card', shown by 'television'"), "{card}");
     inspect(&[&screen, "--layer", "1", "-o", "sign.png"]);

@@ -50,8 +50,8 @@ const CONVENTIONS: [&str; 7] = [
     "The table's axes are roughness (x) and sqrt(1 - cos theta_view) (y), nodes at both ends; texels are \
     read \
      unfiltered.",
-    "A layer of the light textures is a pyramid that the kernels texture_load and texture_blur make; it is \
-    read \
+    "A light's image has four array layers of the light textures: its mips, and what lobes \
+     see of it, which the kernels texture_load, texture_mip and texture_kernel make. They are read \
      trilinearly, clamped to the edge, at an explicit level.",
 ];
 
@@ -142,7 +142,7 @@ fn binding(binding: &Binding) -> Value {
 }
 
 fn constant_name(id: u32) -> &'static str {
-    const NAMES: [(u32, &str); 26] = [
+    const NAMES: [(u32, &str); 25] = [
         (constant::EFFECTS, "EFFECTS"),
         (constant::FORM_FACTOR, "FORM_FACTOR"),
         (constant::POSITION_SOURCE, "POSITION_SOURCE"),
@@ -151,7 +151,6 @@ fn constant_name(id: u32) -> &'static str {
         (constant::SPECULAR_LOBES, "SPECULAR_LOBES"),
         (constant::LOBES, "LOBES"),
         (constant::FOOTPRINT, "FOOTPRINT"),
-        (constant::RADIUS, "RADIUS"),
         (constant::LOAD_STEPS, "LOAD_STEPS"),
         (constant::SHAPE, "SHAPE"),
         (constant::HAS_QUADS, "HAS_QUADS"),

@@ -6,7 +6,7 @@ use crate::plots::bytes_of;
 use crate::{gpu, lights};
 use arealight::TexturePart;
 use arealight::pyramid::PyramidSize;
-use arealight_engine::{Engine, EngineError, SourceImage, SourceTexels};
+use arealight_engine::{Engine, EngineError, Of, SourceImage, SourceTexels};
 use arealight_scene::Scene;
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -21,7 +21,7 @@ pub struct Pyramid {
     /// The file, and what of it.
     pub name: String,
     pub size: PyramidSize,
-    /// Of each, linear light, row after row from the top.
+    /// The image, then the colours that are seen from each height; linear light, row after row from the top.
     pub levels: Vec<Vec<[f32; 4]>>,
 }
 
@@ -86,8 +86,11 @@ fn layer_name(path: &Path, scene: &Scene, layer: u32) -> Result<String, Failure>
 
 fn read_back(engine: &Engine, name: String, layer: u32) -> Result<Pyramid, EngineError> {
     let size = engine.texture_size().expect("textures were loaded");
-    let levels = (0..size.levels()).map(|level| engine.download_level(layer, level));
-    let levels = levels.collect::<Result<_, _>>()?;
+    let mut levels = vec![engine.download_level(layer, Of::Image, 0)?];
+    for level in 0..size.levels() {
+        let seen = engine.download_level(layer, Of::A, level)?;
+        levels.push(seen.into_iter().map(|[r, g, b, a]| [r / a, g / a, b / a, 1.0]).collect());
+    }
     Ok(Pyramid { name, size, levels })
 }
 
@@ -149,11 +152,12 @@ impl Loaded {
 }
 
 impl Pyramid {
-    /// The levels with their sides in texels, and their blurs in texels of level 0 and in sizes of the image.
-    fn levels(&self) -> impl Iterator<Item = (&[[f32; 4]], u32, f64, f64)> {
-        self.levels.iter().zip(0..).map(|(texels, level)| {
-            let blur = self.size.blur(level);
-            (texels.as_slice(), self.size.side(level), blur, blur / f64::from(self.size.side(0)))
+    /// The levels with their sides in texels, and their heights in roots of the light's area.
+    fn levels(&self) -> impl Iterator<Item = (&[[f32; 4]], u32, f64)> {
+        self.levels.iter().zip(0_u32..).map(|(texels, number)| {
+            let level = number.saturating_sub(1);
+            let height = if number == 0 { 0.0 } else { self.size.height(level) };
+            (texels.as_slice(), self.size.side(level), height)
         })
     }
 
@@ -163,10 +167,10 @@ impl Pyramid {
         let peak = texels.fold(1.0_f32, |peak, channel| peak.max(*channel));
         let white = if peak > 1.0 { format!("; white is {peak:.3}") } else { String::new() };
         let side = self.size.side(0);
-        let level = |(texels, side, blur, share): (&[[f32; 4]], u32, f64, f64)| {
+        let level = |(texels, side, height): (&[[f32; 4]], u32, f64)| {
             let channels = texels.iter().flat_map(|[r, g, b, _]| [r, g, b]);
             let bytes: Vec<u8> = channels.map(|channel| srgb_from_linear(channel / peak)).collect();
-            json!({ "size": [side, side], "blur": blur, "share": share, "srgb": bytes_of(&bytes) })
+            json!({ "size": [side, side], "height": height, "srgb": bytes_of(&bytes) })
         };
         json!({
             "title": format!("{}\n{side} x {side} texels{white}", self.name),
@@ -179,25 +183,25 @@ impl Pyramid {
         let side = self.size.side(0);
         let mut text =
             format!("{}\nsize  {side} x {side} texels, {} in all\n\n", self.name, self.size.texels());
-        let [level, extent, blur, share] = ["level", "extent", "blur/texels", "blur/size"];
-        let _ = writeln!(text, "{level:<6} {extent:>11} {blur:>12} {share:>10}  mean");
-        for (number, (texels, side, blur, share)) in self.levels().enumerate() {
+        let [level, extent, height] = ["level", "extent", "height"];
+        let _ = writeln!(text, "{level:<6} {extent:>11} {height:>10}  mean");
+        for (number, (texels, side, height)) in self.levels().enumerate() {
             let (mean, extent) = (mean(texels), format!("{side} x {side}"));
+            let level = if number == 0 { "image".to_owned() } else { (number - 1).to_string() };
             let _ = writeln!(
                 text,
-                "{number:<6} {extent:>11} {blur:>12.2} {share:>10.4}  {:.4} {:.4} {:.4}",
+                "{level:<6} {extent:>11} {height:>10.4}  {:.4} {:.4} {:.4}",
                 mean.x, mean.y, mean.z
             );
         }
-        text.push_str("\nblur: a standard deviation, in texels of level 0 and in sizes of the image\n");
+        text.push_str("\nheight: above the light, in roots of its area; what is seen from there\n");
         text
     }
 
     pub fn to_json(&self) -> String {
-        let level = |(texels, side, blur, share): (&[[f32; 4]], u32, f64, f64)| {
-            json!({
-                "extent": [side, side], "blur_texels": blur, "blur": share, "mean": mean(texels).to_array(),
-            })
+        let level = |(texels, side, height): (&[[f32; 4]], u32, f64)| {
+            let mean = mean(texels).to_array();
+            json!({ "extent": [side, side], "height": height, "mean": mean })
         };
         let summary = json!({
             "texture": self.name,
