@@ -27,7 +27,8 @@ pub struct TextureUpdate {
     pub source_set: vk::DescriptorSet,
     /// Width and height of the image in texels, each from 1 to 4096.
     pub source_size: [u32; 2],
-    /// The part of it that the layer shows.
+    /// The part of it that the layer shows, and the form of the light that it is for
+    /// ([`TexturePart::shown_by`]).
     pub part: TexturePart,
     /// The image holds sRGB in a format that does not decode by itself, `R8G8B8A8_UNORM` for instance.
     pub decode_srgb: bool,
