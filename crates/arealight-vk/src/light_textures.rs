@@ -39,8 +39,8 @@ pub struct TextureUpdate {
 ///
 /// 1. [`LightTextures::new`], 2. allocate for [`LightTextures::memory_requirements`], 3.
 ///    [`LightTextures::bind_memory`],
-/// 4. allocate [`LightTextures::level_sets`] sets of [`LightTextures::level_set_layout`], once, and one for each
-///    image ([`LightTextures::source_set_layout`]),
+/// 4. allocate [`LightTextures::level_sets`] sets of [`LightTextures::level_set_layout`], once, and one for
+///    each image ([`LightTextures::source_set_layout`]),
 /// 5. [`LightTextures::write_level_sets`], 6. [`LightTextures::record_clear`].
 ///
 /// From then on [`LightTextures::resource`] can be shaded with, and [`LightTextures::record_update`] replaces
