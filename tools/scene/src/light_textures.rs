@@ -19,7 +19,7 @@ use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
 /// The most light textures a scene has; further lights have the mean colour of what they show. Each takes
-/// four array layers, of which desktop GPUs have 2,048.
+/// four array layers: `maxImageArrayLayers` is 2,048 on desktop GPUs, and 256 at least.
 pub const MAX_LIGHT_TEXTURES: usize = 256;
 
 /// The most texels that [`Scene::light_texture_size`] allows for all layers: half a gibibyte at eight bytes

@@ -152,7 +152,7 @@ impl Loaded {
 }
 
 impl Pyramid {
-    /// The levels with their sides in texels, and their heights in roots of the light's area.
+    /// The levels with their sides in texels, and their heights in the light's longer side.
     fn levels(&self) -> impl Iterator<Item = (&[[f32; 4]], u32, f64)> {
         self.levels.iter().zip(0_u32..).map(|(texels, number)| {
             let level = number.saturating_sub(1);
@@ -194,7 +194,7 @@ impl Pyramid {
                 mean.x, mean.y, mean.z
             );
         }
-        text.push_str("\nheight: above the light, in roots of its area; what is seen from there\n");
+        text.push_str("\nheight: above the light, in its longer side; what is seen from there\n");
         text
     }
 
