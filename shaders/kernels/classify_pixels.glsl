@@ -255,6 +255,10 @@ bool tile_is_diffuse() {
     return HAS_DIFFUSE && tile_maxima[2 * REFLECTION_PAIR].x > 0.0;
 }
 
+vec3 tile_origin() {
+    return IS_ORTHOGRAPHIC ? vec3(0.0) : constants.camera;
+}
+
 TileBox tile_position() {
     return TileBox(-tile_maxima[2 * POSITION_PAIR + 1].xyz, tile_maxima[2 * POSITION_PAIR].xyz);
 }

@@ -18,7 +18,7 @@ layout(push_constant, std430) uniform MediumConstants {
     uint seed;
     float anisotropy;
     uint columns_rows; // 16 bits each
-    uint slices;
+    uint slices_cull; // 16 bits; the upper ones of the radiance that a pixel may lose
     float nearest;  // about where slices begin to grow
     float farthest; // where they end
 } constants;
@@ -28,20 +28,24 @@ layout(push_constant, std430) uniform MediumConstants {
 // part that is let through.
 layout(set = 0, binding = FROXELS_BINDING, rgba16f) uniform image3D froxels;
 
+uint slice_count() {
+    return constants.slices_cull & 0xffffu;
+}
+
 ivec3 froxel_counts() {
-    return ivec3(constants.columns_rows & 0xffffu, constants.columns_rows >> 16, constants.slices);
+    return ivec3(constants.columns_rows & 0xffffu, constants.columns_rows >> 16, slice_count());
 }
 
 // The distance at which a slice begins; slices are even to about `nearest`, then each is longer by a factor.
 float slice_distance(float slice) {
     float growth = log2(1.0 + constants.farthest / constants.nearest);
-    return constants.nearest * (exp2(growth * slice / float(constants.slices)) - 1.0);
+    return constants.nearest * (exp2(growth * slice / float(slice_count())) - 1.0);
 }
 
 // Its inverse.
 float distance_slice(float distance) {
     float growth = log2(1.0 + constants.farthest / constants.nearest);
-    return float(constants.slices) * log2(1.0 + distance / constants.nearest) / growth;
+    return float(slice_count()) * log2(1.0 + distance / constants.nearest) / growth;
 }
 
 #endif

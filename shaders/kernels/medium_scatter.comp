@@ -4,7 +4,9 @@
 
 // What a medium scatters towards the camera once, of every light: an invocation per froxel, at a distance
 // that is drawn within it from frame to frame or in its middle, or at several places. What blocks light is
-// asked by rays: one over a light, drawn by how much of each is scattered, or one over each light.
+// asked by rays: one over a light, drawn by how much of each is scattered, or one over each light. Lights of
+// frames with many are listed first for the froxels of a workgroup. Without MEDIUM_HIDDEN, froxels that
+// medium_hide has not marked hold nothing.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -16,6 +18,9 @@ layout(constant_id = 22) const int MEDIUM_RAYS = 0;
 layout(constant_id = 23) const bool MEDIUM_IMAGE = false;
 layout(constant_id = 24) const bool MEDIUM_JITTER = false;
 layout(constant_id = 25) const uint MEDIUM_SAMPLES = 1u;
+layout(constant_id = 26) const bool MEDIUM_LISTS = false;
+layout(constant_id = 27) const bool MEDIUM_HIDDEN = true;
+const uint CULL = 1u;
 const int HORIZON = 0;
 const int SPECULAR_LOBES = 0;
 const int LOBES = 0;
@@ -36,6 +41,7 @@ const int RAY_A_LIGHT = 2;
 #include "picked_light.glsl"
 #include "visibility_bridge.glsl"
 #include "blocker_bridge.glsl"
+#include "cell_lights.glsl"
 
 // By froxel, as the constants have it for all: scattering in rgb, extinction in a.
 layout(set = 0, binding = MEDIUM_BINDING) uniform texture3D medium_image;
@@ -89,23 +95,26 @@ void add_scattered(inout Scattered scattered, ArealightMediumPoint medium, uint 
     scattered.sum += light;
 }
 
-// What a point of a medium scatters of every light.
-vec3 all_scattered(Scattered scattered, ArealightMediumPoint medium) {
+// What a point of a medium scatters of every light of its cell's.
+vec3 all_scattered(Scattered scattered, ArealightMediumPoint medium, CellList list) {
     if (HAS_QUADS) {
-        for (uint index = 0u; index < constants.quad_count; index++) {
+        for (uint place = 0u; place < list.quad_count; place++) {
+            uint index = cell_light(list, place);
             ArealightGpuLight record = lights[index];
             vec3 light = arealight_in_scattered(medium, load_quad(record));
             add_scattered(scattered, medium, index, record.center, light);
         }
     }
     if (HAS_POLYGONS) {
-        for (uint index = constants.quad_count; index < constants.light_count; index++) {
+        for (uint place = list.quad_count; place < list.light_count; place++) {
+            uint index = cell_light(list, place);
             ArealightGpuLight record = lights[index];
             add_scattered(scattered, medium, index, record.center, in_scattered(medium, record));
         }
     }
     if (HAS_SHAPES) {
-        for (uint index = 0u; index < constants.shape_count; index++) {
+        for (uint place = 0u; place < list.shape_count; place++) {
+            uint index = cell_light(list, list.light_count + place);
             ArealightGpuShape record = shapes[index];
             add_scattered(scattered, medium, PICK_SHAPE | index, record.center, in_scattered(medium, record));
         }
@@ -117,16 +126,10 @@ vec3 all_scattered(Scattered scattered, ArealightMediumPoint medium) {
     return scattered.sum;
 }
 
-// The direction from the camera through a place in the grid's columns.
-vec3 column_direction(vec2 column, ivec3 counts) {
-    vec4 homogeneous = constants.position_from_clip * vec4(column / vec2(counts.xy) * 2.0 - 1.0, 0.5, 1.0);
-    return arealight_normalize_or(homogeneous.xyz / homogeneous.w - constants.camera, vec3(0.0, 0.0, 1.0));
-}
-
 // A sample of a froxel's: of every light, what the place of that index scatters.
-vec3 sample_scattered(ivec3 froxel, ivec3 counts, uint index, float extinction) {
+vec3 sample_scattered(ivec3 froxel, ivec3 counts, uint index, float extinction, CellList list) {
     uvec2 column = uvec2(froxel.xy);
-    uint ray = (constants.seed * constants.slices + uint(froxel.z)) * MEDIUM_SAMPLES + index;
+    uint ray = (constants.seed * uint(counts.z) + uint(froxel.z)) * MEDIUM_SAMPLES + index;
     // Across the column only where there are several
     vec2 across = MEDIUM_SAMPLES > 1u ? arealight_sequence_2d(column, ray) : vec2(0.5);
     float along = MEDIUM_JITTER ? arealight_sequence(column, constants.seed) : 0.5;
@@ -135,24 +138,29 @@ vec3 sample_scattered(ivec3 froxel, ivec3 counts, uint index, float extinction) 
     vec3 position = constants.camera + slice_distance(slice) * away;
     ArealightMediumPoint medium = arealight_medium_point(position, -away, constants.anisotropy);
     float random = arealight_sequence(column.yx, ray);
-    return all_scattered(Scattered(extinction, column, ray, vec3(0.0), NO_PICK, 0.0, random), medium);
+    return all_scattered(Scattered(extinction, column, ray, vec3(0.0), NO_PICK, 0.0, random), medium, list);
 }
 
 void main() {
     ivec3 froxel = ivec3(gl_GlobalInvocationID);
     ivec3 counts = froxel_counts();
+    vec4 here = vec4(constants.scattering, constants.extinction);
+    if (MEDIUM_IMAGE) {
+        here = texelFetch(medium_image, min(froxel, counts - 1), 0);
+    }
+    CellList list = all_lights();
+    if (MEDIUM_LISTS) {
+        list = list_cell(counts, here.a);
+    }
     if (any(greaterThanEqual(froxel, counts))) {
         return;
     }
-    vec4 here = vec4(constants.scattering, constants.extinction);
-    if (MEDIUM_IMAGE) {
-        here = texelFetch(medium_image, froxel, 0);
-    }
     vec3 sum = vec3(0.0);
-    if (here.rgb != vec3(0.0)) {
-        sum = sample_scattered(froxel, counts, 0u, here.a);
+    bool is_shown = MEDIUM_HIDDEN || imageLoad(froxels, froxel).a != 0.0;
+    if (is_shown && here.rgb != vec3(0.0)) {
+        sum = sample_scattered(froxel, counts, 0u, here.a, list);
         for (uint index = 1u; MEDIUM_SAMPLES > 1u && index < MEDIUM_SAMPLES; index++) {
-            sum += sample_scattered(froxel, counts, index, here.a);
+            sum += sample_scattered(froxel, counts, index, here.a, list);
         }
     }
     sum = min(here.rgb * sum / float(MEDIUM_SAMPLES), vec3(65504.0));

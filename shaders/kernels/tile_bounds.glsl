@@ -5,6 +5,13 @@
 // bounds holds for every pixel. A range is a vec2, its ends in order. Positions are relative to the camera.
 
 const float TILE_FAR = 3e38;
+const float TILE_PI = 3.1415927;
+
+// Its pixels, an invocation each; memory that they share: values of theirs, eight at a time, and then free for
+// other use.
+const uint TILE_PIXELS = 64u;
+shared vec4 tile_scratch[2u * TILE_PIXELS];
+shared float tile_parts[TILE_PIXELS];
 
 // Vectors between two corners.
 struct TileBox {
@@ -42,6 +49,9 @@ struct TileLight {
     float distance;  // no pixel is farther from its center
     float margin;    // what heights may err by
 };
+
+// How bounds are rounded, generously.
+const float TILE_ROUNDING = 1.001;
 
 // How far lights may stand out of the plane of their normal, over their radius.
 const float TILE_FLATNESS = 1e-3;

@@ -3,12 +3,6 @@
 
 // Maxima over the 64 pixels of a tile, in memory that the workgroup shares.
 
-const uint TILE_PIXELS = 64u;
-
-// Values of the pixels, eight at a time; afterwards free for other use.
-shared vec4 tile_scratch[2u * TILE_PIXELS];
-shared float tile_parts[TILE_PIXELS];
-
 // The maxima, in pairs of vectors: those of coats are the last.
 const int TILE_PAIRS = AREALIGHT_HAS_COAT ? 8 : 5;
 shared vec4 tile_maxima[2 * TILE_PAIRS];

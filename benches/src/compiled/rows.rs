@@ -234,9 +234,11 @@ fn other_rows() -> Vec<Row> {
         shadow_filter("gather", ShadowFilter::Gather, ShadowHistory::Off),
         shadow_filter("gather, with a history", ShadowFilter::Gather, ShadowHistory::Camera),
         // Media
-        medium("quads", "no rays", none, false),
-        medium("quads", "1 ray", none, true),
-        medium("every kind", "no rays", every_kind, false),
+        medium("quads", "no rays", none, (1, false)),
+        medium("quads", "no rays, lists", none, (100, false)),
+        medium("quads", "1 ray", none, (1, true)),
+        medium("profiles", "no rays", Effects::POLYGON | Effects::PROFILE, (1, false)),
+        medium("every kind", "no rays", every_kind, (1, false)),
         // Images of lights
         load("copied", 0),
         load("resampled, sRGB", 3),
@@ -333,8 +335,8 @@ fn shadowed(surfaces: Effects, shadow_rays: u32) -> ShadeOptions {
 }
 
 /// Froxels; `kinds` of lights beside quads.
-fn medium(lights: &'static str, level: &'static str, kinds: Effects, rays: bool) -> Row {
-    let frame = LightSummary { quad_count: 1, effects: kinds, ..LightSummary::default() };
+fn medium(lights: &'static str, level: &'static str, kinds: Effects, (count, rays): (u32, bool)) -> Row {
+    let frame = LightSummary { light_count: count, quad_count: 1, effects: kinds, ..LightSummary::default() };
     let options = MediumOptions { shadow_rays: rays, one_light: rays, ..MediumOptions::default() };
     let specialization = plan::medium_scatter_specialization(options, frame);
     row(&kernels::MEDIUM_SCATTER, lights, level, None, specialization)

@@ -16,7 +16,7 @@ lights are quads, nothing is shadowed.
 
 /// What follows the first table.
 const LEGEND: &str = "
-**Send yours**: `arealight bench --save docs/results/my-gpu.json` takes a minute on a GPU. The file has the
+**Send yours**: `arealight bench --save docs/results/my-gpu.json` takes some minutes. The file has the
 names of the device and its driver, and what was measured. `arealight bench results` makes this page.
 
 In the tables below errors are split into what the lobe cannot follow (fit: lobes fitted to just that

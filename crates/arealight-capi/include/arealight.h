@@ -576,6 +576,9 @@ typedef struct ArealightMediumOptions {
     uint32_t by_image;
     // 1: a froxel's distance is drawn within it, by ArealightMediumFrame.seed. Else 0.
     uint32_t jitter;
+    // 1: froxels that surfaces hide from every pixel are filled, too. 0: they hold nothing, and positions are
+    // of the picture's size.
+    uint32_t fill_hidden;
 } ArealightMediumOptions;
 
 // The resources of a descriptor set.
@@ -737,8 +740,9 @@ typedef struct ArealightMediumFrame {
     float farthest;
     // Of random numbers: one more in each frame.
     uint32_t seed;
-    // 0
-    uint32_t reserved;
+    // Lights are left out of froxels that together add no more than this to a pixel's radiance, in the sum of
+    // the channels, for each unit of albedo. 0: only lights that nothing comes of.
+    float cull_radiance;
 } ArealightMediumFrame;
 
 // The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before
@@ -1474,11 +1478,12 @@ AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, frame) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, host_set) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, origin_shift) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, reserved) == 28);
-AREALIGHT_ASSERT(sizeof(ArealightMediumOptions) == 16);
+AREALIGHT_ASSERT(sizeof(ArealightMediumOptions) == 20);
 AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, shadow_rays) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, samples) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, by_image) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, jitter) == 12);
+AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, fill_hidden) == 16);
 AREALIGHT_ASSERT(sizeof(ArealightMediumResources) == 80);
 AREALIGHT_ASSERT(offsetof(ArealightMediumResources, froxels) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightMediumResources, medium) == 16);
@@ -1494,7 +1499,7 @@ AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, anisotropy) == 44);
 AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, nearest) == 48);
 AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, farthest) == 52);
 AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, seed) == 56);
-AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, reserved) == 60);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, cull_radiance) == 60);
 AREALIGHT_ASSERT(sizeof(ArealightBlockerArrays) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, nodes) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, triangles) == 8);

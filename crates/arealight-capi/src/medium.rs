@@ -30,6 +30,9 @@ pub struct ArealightMediumOptions {
     pub by_image: u32,
     /// 1: a froxel's distance is drawn within it, by ArealightMediumFrame.seed. Else 0.
     pub jitter: u32,
+    /// 1: froxels that surfaces hide from every pixel are filled, too. 0: they hold nothing, and positions are
+    /// of the picture's size.
+    pub fill_hidden: u32,
 }
 
 /// The host's resources of a medium's pass beyond those of its shade pass.
@@ -71,8 +74,9 @@ pub struct ArealightMediumFrame {
     pub farthest: f32,
     /// Of random numbers: one more in each frame.
     pub seed: u32,
-    /// 0
-    pub reserved: u32,
+    /// Lights are left out of froxels that together add no more than this to a pixel's radiance, in the sum of
+    /// the channels, for each unit of albedo. 0: only lights that nothing comes of.
+    pub cull_radiance: f32,
 }
 
 /// A medium, such as fog, before what an ArealightPass shaded.
@@ -146,9 +150,11 @@ fn medium_options(shade: ShadeOptions, medium: &ArealightMediumOptions) -> Resul
         samples: medium.samples,
         by_image: level(medium.by_image, &[false, true], "medium.by_image")?,
         jitter: level(medium.jitter, &[false, true], "medium.jitter")?,
+        fill_hidden: level(medium.fill_hidden, &[false, true], "medium.fill_hidden")?,
         from_depth: shade.from_depth,
         format: shade.format,
         quality: shade.quality,
+        ..MediumOptions::default()
     })
 }
 
@@ -231,7 +237,6 @@ pub unsafe extern "C" fn arealight_medium_pass_record(
     call(|| unsafe {
         let (pass, given) = (&handles::borrow(pass, "pass")?.pass, arguments::read(frame, "frame")?);
         let (commands, bound) = bound(command_buffer, set, given.host_set)?;
-        arguments::refuse_reserved(given.reserved, "frame.reserved")?;
         let shade = read_frame(arguments::read(given.frame, "frame.frame")?)?;
         Ok(pass.record(commands, bound, &medium_frame(&shade, given))?)
     })
@@ -249,6 +254,7 @@ fn medium_frame(shade: &ShadeFrame, medium: &ArealightMediumFrame) -> MediumFram
         anisotropy: medium.anisotropy,
         nearest: medium.nearest,
         farthest: medium.farthest,
+        cull_radiance: medium.cull_radiance,
         seed: medium.seed,
     }
 }

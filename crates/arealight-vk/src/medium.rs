@@ -9,7 +9,9 @@ use crate::resource::Resource;
 use crate::shade::{Bound, ResourceAccess, ShadeResources, accesses_of};
 use crate::shadows::{BlockerResources, USED, WRITTEN};
 use arealight::gpu::MediumConstants;
-use arealight::kernels::{Binding, Kernel, MEDIUM_COMPOSE, MEDIUM_INTEGRATE, MEDIUM_SCATTER, store_to};
+use arealight::kernels::{
+    Binding, Kernel, MEDIUM_COMPOSE, MEDIUM_HIDE, MEDIUM_INTEGRATE, MEDIUM_SCATTER, store_to,
+};
 use arealight::plan::{self, MediumOptions};
 use arealight::{LightSummary, Plane};
 use ash::vk;
@@ -66,6 +68,10 @@ pub struct MediumFrame {
     pub nearest: f32,
     /// Where the last slice ends. Above `nearest`.
     pub farthest: f32,
+    /// Lights are left out of 8 x 8 froxels that together add no more than this to a pixel's radiance, in the
+    /// sum of the channels, for each unit of albedo: far below what your exposure shows. With 0 only lights
+    /// that nothing comes of. Without [`MediumOptions::least_lights`] none is.
+    pub cull_radiance: f32,
     /// Of the random numbers that distances and rays are drawn with: one more in each frame.
     pub seed: u32,
 }
@@ -94,12 +100,12 @@ impl MediumStage {
     }
 }
 
-/// Light that a medium scatters once, before what a [`crate::ShadePass`] shaded: three dispatches over a grid
-/// of froxels. Every light of the frame shines into every froxel: lists of tiles are made for surfaces, and
-/// the air before those has other lights.
+/// Light that a medium scatters once, before what a [`crate::ShadePass`] shaded: dispatches over a grid of
+/// froxels.
 #[derive(Debug)]
 pub struct MediumPass {
     stages: [Pipelines; 3],
+    hide: Pipelines,
     options: MediumOptions,
 }
 
@@ -132,7 +138,8 @@ impl MediumPass {
                 pipelines(&MEDIUM_INTEGRATE, MEDIUM_INTEGRATE.words()),
                 pipelines(&MEDIUM_COMPOSE, compose),
             ];
-            Ok(Self { stages, options })
+            let hide = pipelines(&MEDIUM_HIDE, MEDIUM_HIDE.words());
+            Ok(Self { stages, hide, options })
         }
     }
 
@@ -202,7 +209,16 @@ impl MediumPass {
     /// # Errors
     /// [`Error::Vulkan`] where a call fails.
     pub fn prepare(&self, lights: LightSummary) -> Result<(), Error> {
+        self.hide(|_| ())?;
         MediumStage::ALL.into_iter().try_for_each(|stage| self.with(stage, lights, |_| ()))
+    }
+
+    /// Does something with the pipeline that marks what pixels look through, unless all is filled.
+    fn hide(&self, act: impl FnOnce(&crate::ComputePass)) -> Result<(), Error> {
+        if self.options.fill_hidden {
+            return Ok(());
+        }
+        self.hide.with(plan::medium_hide_specialization(self.options), act)
     }
 
     /// Does something with the pipeline of a stage.
@@ -285,6 +301,16 @@ impl MediumPass {
         });
         self.layouts().check_set(sets[0])?;
         self.stages[stage as usize].check(bytes, groups)?;
+        if stage == MediumStage::Scatter {
+            self.hide(|pass| {
+                let groups = MEDIUM_HIDE.groups_for([columns, rows, 1]);
+                // SAFETY: the same contract.
+                unsafe {
+                    pass.record_checked(command_buffer, &sets, bytes, groups);
+                    self.layouts().context().record_barrier(command_buffer, WRITTEN, USED);
+                }
+            })?;
+        }
         self.with(stage, frame.lights, |pass| {
             // SAFETY: the same contract.
             unsafe { pass.record_checked(command_buffer, &sets, bytes, groups) };
@@ -315,6 +341,9 @@ fn constants_of(frame: &MediumFrame) -> Result<MediumConstants, Error> {
     if !is_amount(frame.extinction) {
         return wrong("extinction", "must be finite and not negative");
     }
+    if !is_amount(frame.cull_radiance) {
+        return wrong("cull_radiance", "must be finite and not negative");
+    }
     if frame.anisotropy.is_nan() || frame.anisotropy.abs() >= 1.0 {
         return wrong("anisotropy", "must be between -1 and 1");
     }
@@ -332,7 +361,7 @@ fn constants_of(frame: &MediumFrame) -> Result<MediumConstants, Error> {
         seed: frame.seed,
         anisotropy: frame.anisotropy,
         columns_rows: counts[0] | counts[1] << 16,
-        slices: counts[2],
+        slices_cull: counts[2] | frame.cull_radiance.to_bits() & 0xffff_0000,
         nearest: frame.nearest,
         farthest: frame.farthest,
     })
@@ -355,11 +384,12 @@ mod tests {
             anisotropy: 0.8,
             nearest: 1.0,
             farthest: 50.0,
+            cull_radiance: 1.0,
             seed: 0,
         };
         let constants = constants_of(&good).unwrap();
         let [columns, rows] = [constants.columns_rows & 0xffff, constants.columns_rows >> 16];
-        assert_eq!([columns, rows, constants.slices], good.froxels);
+        assert_eq!([columns, rows, constants.slices_cull & 0xffff], good.froxels);
         for (field, frame) in [
             ("froxels", MediumFrame { froxels: [160, 0, 64], ..good }),
             ("froxels", MediumFrame { froxels: [160, 90, 65536], ..good }),
@@ -369,6 +399,8 @@ mod tests {
             ("scattering", MediumFrame { scattering: Vec3::new(0.0, -1.0, 0.0), ..good }),
             ("extinction", MediumFrame { extinction: f32::INFINITY, ..good }),
             ("anisotropy", MediumFrame { anisotropy: 1.0, ..good }),
+            ("cull_radiance", MediumFrame { cull_radiance: -1.0, ..good }),
+            ("cull_radiance", MediumFrame { cull_radiance: f32::NAN, ..good }),
             ("anisotropy", MediumFrame { anisotropy: f32::NAN, ..good }),
             ("farthest", MediumFrame { farthest: 1.0, ..good }),
             ("farthest", MediumFrame { nearest: 0.0, ..good }),

@@ -173,8 +173,9 @@ pub struct MediumConstants {
     pub anisotropy: f32,
     /// Froxels of a slice: columns, and rows from bit 16 on.
     pub columns_rows: u32,
-    /// How many slices there are.
-    pub slices: u32,
+    /// How many slices there are; in the upper 16 bits those of the float of the radiance that a pixel may
+    /// lose.
+    pub slices_cull: u32,
     /// About where slices begin to grow.
     pub nearest: f32,
     /// Where they end.

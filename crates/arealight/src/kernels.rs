@@ -135,7 +135,11 @@ pub static SHADOW_FILTER: Kernel =
     Kernel::of_pass("shadow_filter", include_bytes!("../spirv/shadow_filter.spv"), &SHADOW_PASS);
 
 /// The kernels of a medium's pass, which have one descriptor set and [`crate::gpu::MediumConstants`].
-pub static MEDIUM_PASS: [&Kernel; 3] = [&MEDIUM_SCATTER, &MEDIUM_INTEGRATE, &MEDIUM_COMPOSE];
+pub static MEDIUM_PASS: [&Kernel; 4] = [&MEDIUM_HIDE, &MEDIUM_SCATTER, &MEDIUM_INTEGRATE, &MEDIUM_COMPOSE];
+
+/// Marks the froxels that pixels look through; an invocation per column.
+pub static MEDIUM_HIDE: Kernel =
+    Kernel::of_pass("medium_hide", include_bytes!("../spirv/medium_hide.spv"), &MEDIUM_PASS);
 
 /// Fills froxels with what a medium scatters of every light towards the camera; an invocation per froxel.
 pub static MEDIUM_SCATTER: Kernel =
@@ -163,12 +167,13 @@ pub static TEXTURE_KERNEL: Kernel =
     Kernel::new("texture_kernel", include_bytes!("../spirv/texture_kernel.spv"));
 
 /// Every kernel.
-pub static ALL: [&Kernel; 11] = [
+pub static ALL: [&Kernel; 12] = [
     &SHADE,
     &CLASSIFY,
     &SHADOW_RAYS,
     &SHADOW_HISTORY,
     &SHADOW_FILTER,
+    &MEDIUM_HIDE,
     &MEDIUM_SCATTER,
     &MEDIUM_INTEGRATE,
     &MEDIUM_COMPOSE,

@@ -309,6 +309,13 @@ pub struct MediumOptions {
     pub by_image: bool,
     /// Whether a froxel's distance is drawn within it, by the frame's seed; else it is its middle.
     pub jitter: bool,
+    /// Whether froxels that surfaces hide from every pixel are filled, too: for hosts that record the first
+    /// stage before positions are there. Else they hold nothing, and [`Plane::Position`] has the picture's
+    /// size.
+    pub fill_hidden: bool,
+    /// Frames of fewer lights have no lists: to make them would take longer than it could save
+    /// (docs/media.md).
+    pub least_lights: u32,
     /// As [`ShadeOptions::from_depth`], of the surfaces that the medium is before.
     pub from_depth: bool,
     /// The format of the radiance that it is put before.
@@ -325,6 +332,8 @@ impl Default for MediumOptions {
             samples: 1,
             by_image: false,
             jitter: false,
+            fill_hidden: false,
+            least_lights: 32,
             from_depth: false,
             format: RadianceFormat::default(),
             quality: Quality::default(),
@@ -335,6 +344,7 @@ impl Default for MediumOptions {
 /// The values of the constants of [`kernels::MEDIUM_SCATTER`], for a frame's lights.
 pub fn medium_scatter_specialization(options: MediumOptions, lights: LightSummary) -> Vec<(u32, u32)> {
     let rays = if options.one_light { 1 } else { 2 };
+    let has_lists = lights.light_count + lights.shape_count >= options.least_lights;
     vec![
         (kernels::constant::EFFECTS, lights.effects.bits()),
         (kernels::constant::FORM_FACTOR, options.quality.form_factor as u32),
@@ -344,15 +354,21 @@ pub fn medium_scatter_specialization(options: MediumOptions, lights: LightSummar
         (kernels::constant::MEDIUM_IMAGE, u32::from(options.by_image)),
         (kernels::constant::MEDIUM_JITTER, u32::from(options.jitter)),
         (kernels::constant::MEDIUM_SAMPLES, options.samples.max(1)),
+        (kernels::constant::MEDIUM_LISTS, u32::from(has_lists)),
+        (kernels::constant::MEDIUM_HIDDEN, u32::from(options.fill_hidden)),
     ]
+}
+
+/// The values of the constants of [`kernels::MEDIUM_HIDE`].
+pub fn medium_hide_specialization(options: MediumOptions) -> Vec<(u32, u32)> {
+    vec![(kernels::constant::POSITION_SOURCE, u32::from(options.from_depth))]
 }
 
 /// The values of the constants of [`kernels::MEDIUM_COMPOSE`].
 pub fn medium_compose_specialization(options: MediumOptions) -> Vec<(u32, u32)> {
-    vec![
-        (kernels::constant::POSITION_SOURCE, u32::from(options.from_depth)),
-        (kernels::constant::OUTPUT, options.format as u32),
-    ]
+    let mut values = medium_hide_specialization(options);
+    values.push((kernels::constant::OUTPUT, options.format as u32));
+    values
 }
 
 /// The values of the classify kernel's specialisation constants, for the lights of a frame.

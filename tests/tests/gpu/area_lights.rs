@@ -144,6 +144,7 @@ fn media_dim_what_is_shaded_and_scatter_light_that_nothing_blocks() {
         anisotropy: 0.5,
         nearest: 1.0,
         farthest: 16.0,
+        cull_radiance: 0.0,
         seed: 0,
     };
     for shadow_rays in [0, 1] {

@@ -333,7 +333,7 @@ fn media_of_c_dim_and_scatter_what_is_known() {
         nearest: 1.0,
         farthest: 8.0,
         seed: 0,
-        reserved: 0,
+        cull_radiance: 0.0,
     };
     let seen = |frame: &_, rays, wall| passes.run(&behind(wall), 0, Some((rays, frame)))[0].truncate();
     let (before, away) = (seen(&clear, 0, 2.0), patch().view.length());

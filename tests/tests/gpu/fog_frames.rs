@@ -1,16 +1,20 @@
 //! A medium before pictures: froxels against Monte Carlo.
 
-use arealight::plan::{Output, ShadeOptions};
+use arealight::plan::{MediumOptions, Output, ShadeOptions};
+use arealight::{Light, LightShape, Profile, TubeEnds};
+use arealight_engine::host::{ImageDescription, Usage};
 use arealight_engine::{Fog, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers};
-use arealight_tests::TestEngine;
 use arealight_tests::frame::scene;
-use glam::{Vec3, Vec4};
+use arealight_tests::{Random, TestEngine};
+use arealight_vk::Resource;
+use ash::vk;
+use glam::{DVec3, Vec3, Vec4};
 
 const SIZE: [u32; 2] = [64, 36];
 const FROXELS: [u32; 3] = [32, 18, 64];
 
-const FOG: Fog = Fog { density: 0.15, albedo: Vec3::ONE, anisotropy: 0.5, farthest: 14.0 };
+const FOG: Fog = Fog { density: 0.15, albedo: Vec3::ONE, anisotropy: 0.5, farthest: 14.0, cull_radiance: 0.0 };
 
 /// The picture of a scene's lamps, with what `act` adds before.
 fn picture(
@@ -46,7 +50,8 @@ fn add_fog(
     froxels: [u32; 3],
     (samples, shadows, seed): (u32, bool, u32),
 ) {
-    let view = renderer.fog_view(buffers, froxels, (samples, shadows)).unwrap();
+    let options = MediumOptions { samples, shadow_rays: shadows, ..MediumOptions::default() };
+    let view = renderer.fog_view(buffers, froxels, (options, None)).unwrap();
     renderer.add_fog(&view, fog, seed).unwrap();
 }
 
@@ -156,6 +161,110 @@ fn no_fog_changes_nothing_and_much_of_it_gives_numbers() {
             assert!(found.iter().all(|texel| texel.is_finite() && texel.min_element() >= 0.0), "{density}");
         }
     }
+}
+
+/// slats.glb with small lights of every kind in it, some of which shine to both sides or in a cone.
+fn crowded(count: usize) -> Scene {
+    let mut scene = scene("slats.glb");
+    let mut random = Random::new(5);
+    let (low, high) = (scene.bounds.min, scene.bounds.max);
+    for index in 0..count {
+        let place = DVec3::from_array(std::array::from_fn(|_| random.unit()));
+        let center = low + (high - low) * place;
+        let (axis_u, axis_v) = random.direction().any_orthonormal_pair();
+        let (axis_u, axis_v) = (0.1 * axis_u, 0.05 * axis_v);
+        let shape = match index % 4 {
+            0 => LightShape::Disk { center, axis_u, axis_v },
+            1 => LightShape::Sphere { center, radius: 0.05 },
+            2 => {
+                let (p0, p1) = (center - axis_u, center + axis_u);
+                LightShape::Tube { p0, p1, radius: 0.02, ends: TubeEnds::Round }
+            }
+            _ => LightShape::Polygon(random.polygon(center, 3 + index % 3, 0.05, 0.1)),
+        };
+        let profile = matches!(shape, LightShape::Polygon(_)).then(|| Profile::cone(0.3, 0.6, 4).unwrap());
+        let profile = profile.filter(|_| index % 8 == 3);
+        let two_sided = index % 3 == 0 && profile.is_none();
+        let radiance = Vec3::splat(random.between(1.0, 20.0) as f32);
+        scene.lights.push(Light { shape, radiance, two_sided, profile, ..Light::default() });
+    }
+    scene
+}
+
+#[test]
+fn lists_and_hidden_froxels_change_no_pixel_beyond_what_it_may_lose() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = crowded(90);
+    let froxels = [32, 18, 16];
+    for anisotropy in [0.0, -0.8] {
+        let fog = Fog { anisotropy, ..FOG };
+        let with = |fog: Fog, options: MediumOptions| {
+            picture(&engine, &scene, |renderer, buffers| {
+                let view = renderer.fog_view(buffers, froxels, (options, None)).unwrap();
+                renderer.add_fog(&view, &fog, 0).unwrap();
+            })
+        };
+        let all = MediumOptions { fill_hidden: true, least_lights: u32::MAX, ..MediumOptions::default() };
+        let (all, listed) = (with(fog, all), MediumOptions::default());
+        // A light's share is summed in the same order: what is left out is zero
+        assert_eq!(with(fog, listed), all);
+        let lost = |cull_radiance: f32| {
+            let found = with(Fog { cull_radiance, ..fog }, listed);
+            let pairs = found.iter().zip(&all);
+            pairs.map(|(found, all)| (*all - *found).truncate().element_sum()).fold(0.0, f32::max)
+        };
+        for cull_radiance in [0.01, 0.1] {
+            let lost = lost(cull_radiance);
+            println!("g {anisotropy}: {lost:.1e} of {cull_radiance}");
+            // Something is, and no more than promised; froxels are rounded to eleven bits
+            assert!(lost > 0.003 * cull_radiance && lost <= 1.001 * cull_radiance, "{lost}");
+        }
+        // The twin: a larger promise is used
+        assert!(lost(1.0) > 0.03, "{}", lost(1.0));
+    }
+}
+
+#[test]
+fn an_image_of_an_even_medium_is_that_medium() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (host, scene) = (engine.host(), crowded(30));
+    let (format, usage) = (vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::SAMPLED);
+    let [width, height, depth] = FROXELS;
+    let description = ImageDescription { name: "medium", extent: [width, height], layers: 1, format, usage };
+    let medium = host.volume(&description, depth).unwrap();
+    let fill = |scattering: f32, extinction: f32| {
+        let color = vk::ClearColorValue { float32: [scattering, scattering, scattering, extinction] };
+        host.submit(|commands| {
+            medium.transition(commands, Usage::UNDEFINED, Usage::COPY_DESTINATION);
+            let layout = Usage::COPY_DESTINATION.layout;
+            let all = vk::ImageSubresourceRange {
+                aspect_mask: vk::ImageAspectFlags::COLOR,
+                level_count: 1,
+                layer_count: 1,
+                ..Default::default()
+            };
+            // SAFETY: the image is of this device, in that layout, and outlives the submission.
+            unsafe { host.device().cmd_clear_color_image(commands, medium.handle(), layout, &color, &[all]) };
+            medium.transition(commands, Usage::COPY_DESTINATION, Usage::COMPUTE_READ);
+        })
+        .unwrap();
+    };
+    let with = |fog: Fog, by_image: bool| {
+        let options = MediumOptions { by_image, ..MediumOptions::default() };
+        let image = by_image.then(|| Resource::sampled(medium.view()));
+        picture(&engine, &scene, |renderer, buffers| {
+            let view = renderer.fog_view(buffers, FROXELS, (options, image)).unwrap();
+            renderer.add_fog(&view, &fog, 0).unwrap();
+        })
+    };
+    let fog = Fog { cull_radiance: 0.01, ..FOG };
+    let even = with(fog, false);
+    fill(fog.density, fog.density);
+    let other = Fog { density: 9.0, ..fog };
+    assert_eq!(with(other, true), even);
+    // The twin: the image is what is read
+    fill(fog.density, 2.0 * fog.density);
+    assert_ne!(with(other, true), even);
 }
 
 #[test]

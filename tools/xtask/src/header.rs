@@ -120,10 +120,11 @@ fn layouts() -> [Layout; 26] {
         ArealightShadowOptions { filter, history, output }
         ArealightShadowResources { shadow, radiance, history, blocker_nodes, blocker_triangles }
         ArealightShadowFrame { frame, host_set, origin_shift, reserved }
-        ArealightMediumOptions { shadow_rays, samples, by_image, jitter }
+        ArealightMediumOptions { shadow_rays, samples, by_image, jitter, fill_hidden }
         ArealightMediumResources { froxels, medium, blocker_nodes, blocker_triangles }
         ArealightMediumFrame {
-            frame, host_set, froxels, scattering, extinction, anisotropy, nearest, farthest, seed, reserved,
+            frame, host_set, froxels, scattering, extinction, anisotropy, nearest, farthest, seed,
+            cull_radiance,
         }
         ArealightBlockerArrays { nodes, triangles, nodes_size, triangles_size }
         ArealightTextureOptions { side, layers }

@@ -1,7 +1,7 @@
 //! The phase function's lobes that are built in, against the fitter and the truth.
 
 use arealight_fit::phase;
-use arealight_oracle::phase::{MAX_ANISOTROPY, PhaseFit};
+use arealight_oracle::phase::{MAX_ANISOTROPY, PhaseFit, henyey_greenstein};
 use std::path::Path;
 
 /// |g|, and the error that the documents state.
@@ -48,6 +48,10 @@ fn its_error_is_as_stated_and_it_is_nowhere_negative() {
         // The backward lobe takes away, but not more than there is
         let least = (0..=400).map(|k| lobes.density(f64::from(k) / 200.0 - 1.0)).fold(1.0, f64::min);
         assert!(least > 0.001, "{g}: {least}");
+        // PHASE_EXCESS of cell_lights.glsl, which it needs at the largest g
+        let excess = |mu: f64| lobes.density(mu) / henyey_greenstein(g, mu);
+        let most = (0..=400).map(|k| excess(f64::from(k) / 200.0 - 1.0)).fold(0.0, f64::max);
+        assert!(most <= 1.16 && (g < MAX_ANISOTROPY || most > 1.1), "{g}: {most}");
     }
     assert_eq!(PhaseFit::HG.lobes(0.0).uniform, 1.0);
     assert_eq!(PhaseFit::HG.lobes(f64::NAN), PhaseFit::HG.lobes(0.0));

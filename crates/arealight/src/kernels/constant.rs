@@ -51,3 +51,7 @@ pub const MEDIUM_IMAGE: u32 = 23;
 pub const MEDIUM_JITTER: u32 = 24;
 /// Of [`super::MEDIUM_SCATTER`]: [`crate::plan::MediumOptions::samples`].
 pub const MEDIUM_SAMPLES: u32 = 25;
+/// Whether the frame has [`crate::plan::MediumOptions::least_lights`].
+pub const MEDIUM_LISTS: u32 = 26;
+/// [`crate::plan::MediumOptions::fill_hidden`].
+pub const MEDIUM_HIDDEN: u32 = 27;

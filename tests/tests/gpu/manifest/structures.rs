@@ -281,7 +281,7 @@ fn the_constants_of_media_have_the_same_offsets() {
         seed,
         anisotropy,
         columns_rows,
-        slices,
+        slices_cull,
         nearest,
         farthest,
     );

@@ -4,7 +4,7 @@ use super::state::{Mode, Partner, State};
 use super::{lamps, orbit::Orbit};
 use crate::means::{Distance, Means};
 use crate::shadows::Shadows;
-use arealight::plan::ShadeOptions;
+use arealight::plan::{MediumOptions, ShadeOptions};
 use arealight::{Effects, Level, Quality};
 use arealight_benches::ladder::{SHADE_YARDSTICK, yardstick_for};
 use arealight_benches::published;
@@ -303,8 +303,9 @@ impl<'a> Viewer<'a> {
         if let Some(fog) = self.fog(&of.0) {
             let [columns, rows] = self.size.map(|side| side.div_ceil(8));
             if self.fogged.as_ref().is_none_or(|(shadows, _)| *shadows != of.0.shadows) {
-                let (froxels, how) = ([columns, rows, 64], (1, of.0.shadows));
-                self.fogged = Some((of.0.shadows, self.renderer.fog_view(&self.buffers, froxels, how)?));
+                let options = MediumOptions { shadow_rays: of.0.shadows, ..MediumOptions::default() };
+                let view = self.renderer.fog_view(&self.buffers, [columns, rows, 64], (options, None))?;
+                self.fogged = Some((of.0.shadows, view));
             }
             if let Some((_, view)) = &self.fogged {
                 self.renderer.add_fog(view, &fog, seed)?;

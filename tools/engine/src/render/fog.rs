@@ -23,6 +23,8 @@ pub struct Fog {
     pub anisotropy: f32,
     /// Where it ends.
     pub farthest: f32,
+    /// [`MediumFrame::cull_radiance`].
+    pub cull_radiance: f32,
 }
 
 impl Fog {
@@ -31,7 +33,7 @@ impl Fog {
         let corners = scene.triangles.iter().flat_map(|triangle| triangle.positions);
         let farthest = corners.map(|corner| corner.distance(camera.position)).fold(1e-3, f64::max) as f32;
         let albedo = Vec3::splat(fog.albedo as f32);
-        Self { density: fog.density as f32, albedo, anisotropy: fog.anisotropy as f32, farthest }
+        Self { density: fog.density as f32, albedo, anisotropy: fog.anisotropy as f32, farthest, cull_radiance: 0.0 }
     }
 }
 
@@ -46,8 +48,8 @@ pub struct FogView {
 }
 
 impl SceneRenderer<'_> {
-    /// Makes what fog takes by `froxels` across, down and away. Each froxel has so many samples, with shadows
-    /// each of them a ray for each light; everything blocks as a whole.
+    /// Makes what fog takes by `froxels` across, down and away; everything blocks as a whole. `medium` is that
+    /// of [`MediumOptions::by_image`].
     ///
     /// # Errors
     /// [`EngineError`] says why the device fails.
@@ -55,11 +57,10 @@ impl SceneRenderer<'_> {
         &self,
         scene: &SceneBuffers,
         froxels: [u32; 3],
-        (samples, shadow_rays): (u32, bool),
+        (options, medium): (MediumOptions, Option<Resource>),
     ) -> Result<FogView, EngineError> {
         let (engine, host) = (self.engine, self.engine.host());
         // doc: pass
-        let options = MediumOptions { shadow_rays, samples, ..MediumOptions::default() };
         let info = MediumPassInfo { options, ..MediumPassInfo::default() };
         // SAFETY: The pass is dropped when no frame uses it, before the device.
         let pass = unsafe { MediumPass::new(engine.context(), info) }?;
@@ -77,7 +78,7 @@ impl SceneRenderer<'_> {
         ];
         let [nodes, triangles] = buffers.each_ref().map(|buffer| Resource::buffer(buffer.handle()));
         let blockers = Some(BlockerResources { nodes, triangles });
-        let resources = MediumResources { froxels: Resource::stored(volume.view()), medium: None, blockers };
+        let resources = MediumResources { froxels: Resource::stored(volume.view()), medium, blockers };
         let pool = host.descriptor_pool(1, &pass.pool_sizes(1))?;
         // SAFETY: The layout is the pass's; the set is new, and the resources live until submissions were
         // waited for.
@@ -109,6 +110,7 @@ impl SceneRenderer<'_> {
             anisotropy: fog.anisotropy,
             nearest: fog.farthest / 16.0,
             farthest: fog.farthest,
+            cull_radiance: fog.cull_radiance,
             seed,
         };
         // doc end

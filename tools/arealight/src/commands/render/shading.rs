@@ -6,7 +6,7 @@ use crate::means::Means;
 use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::shadows::Shadows;
-use arealight::plan::{Output, ShadeOptions, TileOptions};
+use arealight::plan::{MediumOptions, Output, ShadeOptions, TileOptions};
 use arealight::{Effects, Quality};
 use arealight_engine::{Engine, EngineError, Fog, Reference, SceneRenderer, ShadowedView, TileCounts};
 use arealight_scene::{Camera, Scene, SceneBuffers};
@@ -173,7 +173,11 @@ fn add_fog(
         return renderer.fog_reference(fog, samples, (shadows, seed), |_| ());
     }
     let [columns, rows] = size.map(|side| side.div_ceil(8 * arguments.supersample));
-    let view = renderer.fog_view(scene, [columns, rows, 64], (arguments.fog.fog_samples, shadows))?;
+    // doc: medium options
+    let samples = arguments.fog.fog_samples;
+    let options = MediumOptions { shadow_rays: shadows, samples, ..MediumOptions::default() };
+    // doc end
+    let view = renderer.fog_view(scene, [columns, rows, 64], (options, None))?;
     renderer.add_fog(&view, fog, seed)
 }
 
