@@ -5,7 +5,8 @@
 # With AREALIGHT_REQUIRE_GPU=1 (as in CI) a test without a Vulkan device fails. Otherwise it is skipped and listed.
 # With AREALIGHT_LONG=1 every check has its long form: the kernels' statistics are held against those that are
 # checked in for each family of GPU, not for one; every GPU test runs under GPU-assisted validation, too, not only
-# those that are not batteries; and the exported library is compiled with each option in every stage.
+# those that are not batteries; the exported library is compiled with each option in every stage; and the plugin
+# for Bevy, which takes minutes to build, is tested.
 set -uo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
@@ -155,6 +156,11 @@ step "WGSL in a browser answers as the oracle" env AREALIGHT="$programs/arealigh
 wgpu_example=(--manifest-path examples/wgpu/Cargo.toml --locked --quiet --target-dir "${CARGO_TARGET_DIR:-target}/wgpu")
 step "format of the example on wgpu" cargo fmt --manifest-path examples/wgpu/Cargo.toml --check
 step "a host on wgpu draws what the Rust example does" env RUSTFLAGS="-D warnings" cargo test "${wgpu_example[@]}"
+if [[ "${AREALIGHT_LONG:-}" == 1 ]]; then
+    bevy=(--manifest-path examples/bevy/Cargo.toml --locked --quiet --target-dir "${CARGO_TARGET_DIR:-target}/bevy")
+    step "format of the plugin for Bevy" cargo fmt --manifest-path examples/bevy/Cargo.toml --check
+    step "area lights in Bevy are those of the oracle" env RUSTFLAGS="-D warnings" cargo test "${bevy[@]}"
+fi
 step "Python module and its notebook" tools/test-python.sh
 step "archives of a release" tools/test-release.sh
 step "Blender add-on, without Blender" python3 -B tools/blender/test_lamps.py
