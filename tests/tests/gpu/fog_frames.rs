@@ -14,7 +14,8 @@ use glam::{DVec3, Vec3, Vec4};
 const SIZE: [u32; 2] = [64, 36];
 const FROXELS: [u32; 3] = [32, 18, 64];
 
-const FOG: Fog = Fog { density: 0.15, albedo: Vec3::ONE, anisotropy: 0.5, farthest: 14.0, cull_radiance: 0.0 };
+const FOG: Fog =
+    Fog { density: 0.15, albedo: Vec3::ONE, anisotropy: 0.5, farthest: 14.0, cull_radiance: 0.0 };
 
 /// The picture of a scene's lamps, with what `act` adds before.
 fn picture(
@@ -194,7 +195,7 @@ fn crowded(count: usize) -> Scene {
 #[test]
 fn lists_and_hidden_froxels_change_no_pixel_beyond_what_it_may_lose() {
     let Some(engine) = TestEngine::new() else { return };
-    let scene = crowded(90);
+    let scene = crowded(50);
     let froxels = [32, 18, 16];
     for anisotropy in [0.0, -0.8] {
         let fog = Fog { anisotropy, ..FOG };
@@ -213,14 +214,12 @@ fn lists_and_hidden_froxels_change_no_pixel_beyond_what_it_may_lose() {
             let pairs = found.iter().zip(&all);
             pairs.map(|(found, all)| (*all - *found).truncate().element_sum()).fold(0.0, f32::max)
         };
-        for cull_radiance in [0.01, 0.1] {
-            let lost = lost(cull_radiance);
-            println!("g {anisotropy}: {lost:.1e} of {cull_radiance}");
-            // Something is, and no more than promised; froxels are rounded to eleven bits
-            assert!(lost > 0.003 * cull_radiance && lost <= 1.001 * cull_radiance, "{lost}");
-        }
+        let [little, much] = [0.02, 1.0].map(lost);
+        println!("g {anisotropy}: {little:.1e} of .02, {much:.1e} of 1");
+        // Something is, and no more than promised; froxels are rounded to eleven bits
+        assert!(little > 6e-5 && little <= 0.02002, "{little}");
         // The twin: a larger promise is used
-        assert!(lost(1.0) > 0.03, "{}", lost(1.0));
+        assert!(much > 0.02002 && much <= 1.001, "{much}");
     }
 }
 

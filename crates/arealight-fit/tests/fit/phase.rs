@@ -2,6 +2,7 @@
 
 use arealight_fit::phase;
 use arealight_oracle::phase::{MAX_ANISOTROPY, PhaseFit, henyey_greenstein};
+use std::f64::consts::PI;
 use std::path::Path;
 
 /// |g|, and the error that the documents state.
@@ -32,6 +33,19 @@ fn it_is_what_the_fitter_makes_and_what_is_printed() {
     let mut other = PhaseFit::HG;
     other.pieces[1].weight[2][0] += 1e-4;
     assert!(!holds(glsl, &phase::glsl(&other)) && difference(&other, &PhaseFit::HG) > 1e-6);
+}
+
+#[test]
+fn rayleighs_is_half_of_each_of_two() {
+    let error = |g: f64| {
+        let halves = [g, -g].map(|g| PhaseFit::HG.lobes(g));
+        let at = |k: i32| (f64::from(k) + 0.5) / 1000.0 - 1.0;
+        let rayleigh = |mu: f64| 3.0 / (16.0 * PI) * (1.0 + mu * mu);
+        let off = |mu: f64| 0.5 * (halves[0].density(mu) + halves[1].density(mu)) - rayleigh(mu);
+        (0..2000).map(|k| off(at(k)).abs()).sum::<f64>() * 2.0 * PI / 1000.0
+    };
+    // docs/media.md; the twins, other g
+    assert!((error(0.32) - 0.0274).abs() < 2e-4 && error(0.3) > error(0.32) && error(0.35) > error(0.32));
 }
 
 #[test]

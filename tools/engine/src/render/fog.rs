@@ -33,7 +33,13 @@ impl Fog {
         let corners = scene.triangles.iter().flat_map(|triangle| triangle.positions);
         let farthest = corners.map(|corner| corner.distance(camera.position)).fold(1e-3, f64::max) as f32;
         let albedo = Vec3::splat(fog.albedo as f32);
-        Self { density: fog.density as f32, albedo, anisotropy: fog.anisotropy as f32, farthest, cull_radiance: 0.0 }
+        Self {
+            density: fog.density as f32,
+            albedo,
+            anisotropy: fog.anisotropy as f32,
+            farthest,
+            cull_radiance: 0.0,
+        }
     }
 }
 
@@ -48,8 +54,8 @@ pub struct FogView {
 }
 
 impl SceneRenderer<'_> {
-    /// Makes what fog takes by `froxels` across, down and away; everything blocks as a whole. `medium` is that
-    /// of [`MediumOptions::by_image`].
+    /// Makes what fog takes by `froxels` across, down and away; everything blocks as a whole. `medium` is
+    /// that of [`MediumOptions::by_image`].
     ///
     /// # Errors
     /// [`EngineError`] says why the device fails.

@@ -12,7 +12,8 @@ use std::process::ExitCode;
 
 /// Measure what many lights cost: a floor under 10 to 10,000 lamps, shaded with all of them and by tiles.
 ///
-/// Tiles, and lists of froxels, cull a stated fraction of a pixel's radiance. Errors are against the picture with all lights.
+/// Tiles cull a stated fraction of a pixel's radiance, lists of froxels a stated radiance. Errors are against
+/// the picture with all lights.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// How many lamps there are.

@@ -142,7 +142,7 @@ fn binding(binding: &Binding) -> Value {
 }
 
 fn constant_name(id: u32) -> &'static str {
-    const NAMES: [(u32, &str); 25] = [
+    const NAMES: [(u32, &str); 27] = [
         (constant::EFFECTS, "EFFECTS"),
         (constant::FORM_FACTOR, "FORM_FACTOR"),
         (constant::POSITION_SOURCE, "POSITION_SOURCE"),
@@ -168,6 +168,8 @@ fn constant_name(id: u32) -> &'static str {
         (constant::MEDIUM_IMAGE, "MEDIUM_IMAGE"),
         (constant::MEDIUM_JITTER, "MEDIUM_JITTER"),
         (constant::MEDIUM_SAMPLES, "MEDIUM_SAMPLES"),
+        (constant::MEDIUM_LISTS, "MEDIUM_LISTS"),
+        (constant::MEDIUM_HIDDEN, "MEDIUM_HIDDEN"),
     ];
     NAMES.iter().find(|(known, _)| *known == id).map_or("unnamed", |(_, name)| name)
 }
