@@ -101,4 +101,11 @@ echo "A lamp that a pointer has dragged, in the page's own picture:"
 compare test-drag
 echo "The same as if it had stayed, which must differ:"
 must_differ test-drag-from
+self_test() { # the part of the address after #, and which points are wrong, a bit each
+    open_page "$1" "$scratch/$1"
+    [[ "$(<"$scratch/$1")" == "wrong points: $2" ]] || { cat "$scratch/$1" >&2; exit 1; }
+}
+echo "The exported self-test, whose ten points fail with the table's first layer alone:"
+self_test test-self 0
+self_test test-self-first-layer 1023
 echo "ok: WGSL in a browser answers as the oracle does, also of what is dragged; a wrong table and a wrong place show"

@@ -18,6 +18,26 @@ export async function load(device, folder, table = (layers) => layers) {
     return { device, target, pipeline, table: tableTexture(device, file, table) };
 }
 
+// Runs the export's self-test with the table: a bit for each of ten points that is wrong, 0 where all are right.
+export async function wrongPoints({ device, table }, folder) {
+    const code = await (await fetch(`${folder}/webgpu/self_test.wgsl`)).text();
+    const compute = { module: device.createShaderModule({ code }), entryPoint: "main" };
+    const pipeline = await device.createComputePipelineAsync({ layout: "auto", compute });
+    const { STORAGE, COPY_SRC, COPY_DST, MAP_READ } = GPUBufferUsage;
+    const [found, readback] = [STORAGE | COPY_SRC, COPY_DST | MAP_READ].map((usage) => device.createBuffer({ size: 4, usage }));
+    const entries = [table.createView({ dimension: "2d-array" }), { buffer: found }].map((resource, binding) => ({ binding, resource }));
+    const commands = device.createCommandEncoder();
+    const pass = commands.beginComputePass();
+    pass.setPipeline(pipeline);
+    pass.setBindGroup(0, device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries }));
+    pass.dispatchWorkgroups(1);
+    pass.end();
+    commands.copyBufferToBuffer(found, 0, readback, 0, 4);
+    device.queue.submit([commands.finish()]);
+    await readback.mapAsync(GPUMapMode.READ);
+    return new Uint32Array(readback.getMappedRange())[0];
+}
+
 // The table's texture. In a KTX2 file without supercompression the place and length of level 0 are at bytes 80 and 88.
 function tableTexture(device, file, change) {
     const [width, height, layers] = [20, 24, 32].map((at) => file.getUint32(at, true));

@@ -74,10 +74,8 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
     cases.extend(examples(&root.join(EXAMPLES))?);
     cases.extend(host_g_buffer(&folder));
     cases.extend(host_bridges(&folder));
-    let in_one =
-        cases.iter().filter(|case| case.tool == Tool::Glslang && case.compute && case.is_of_one_file());
-    let in_one: Vec<Case> =
-        in_one.map(|case| Case { include: INCLUDES[1], naga: false, ..case.clone() }).collect();
+    let in_one = cases.iter().filter(|case| case.compute && case.is_of_one_file());
+    let in_one: Vec<Case> = in_one.map(|case| Case { include: INCLUDES[1], ..case.clone() }).collect();
     cases.extend(in_one);
     let found = in_parallel(&cases, |index, case| {
         if arguments.verbose {
@@ -221,7 +219,8 @@ fn examples(folder: &Path) -> Result<Vec<Case>, TaskError> {
         for tool in [Tool::Glslang, Tool::Glslc].into_iter().chain(optimised) {
             let (shader, macros) = (shader.clone(), vec![]);
             let (name, include) = ("example".into(), INCLUDES[0]);
-            cases.push(Case { tool, compute, shader, name, macros, naga: false, lacks: None, include });
+            let naga = shader.ends_with("self_test.comp"); // the others have combined samplers
+            cases.push(Case { tool, compute, shader, name, macros, naga, lacks: None, include });
         }
     }
     Ok(cases)

@@ -85,10 +85,15 @@ fn files(arguments: &Arguments) -> Result<Vec<File>, Failure> {
             content: manifest::content_of(path).into(),
         })
         .collect();
-    files.extend(single::FILES.map(|name| File {
-        path: format!("single/{name}"),
-        bytes: single::single(LIBRARY, name).replace("\r\n", "\n").into_bytes(),
-        content: "the GLSL library in one file; include it or paste it".into(),
+    files.extend(single::FILES.map(|name| {
+        let text = single::single(LIBRARY, name).replace("\r\n", "\n");
+        // The self-test is for the default options
+        let effects = arguments.target.effects().filter(|_| name != single::FILES[1]);
+        File {
+            path: format!("single/{name}"),
+            bytes: effects.map_or(text.clone(), |effects| single::resolved(text, effects)).into_bytes(),
+            content: "the GLSL library in one file; include it or paste it".into(),
+        }
     }));
     let table = ggx_file();
     for (name, target, floats) in [

@@ -2,6 +2,7 @@
 
 use crate::common::run;
 use arealight::gpu::{GpuLight, GpuShape, ShadeConstants};
+use arealight::kernels::Kernel;
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 use std::mem::offset_of;
@@ -247,4 +248,41 @@ fn a_target_needs_effects() {
         assert!(said.contains(words), "{said}");
     }
     assert!(!folder.path().join("DIR").exists(), "nothing was written");
+}
+
+/// A compute shader with the exported library in one file, compiled: the module, or what the compiler says.
+fn compile_single(folder: &Path, shader: &str) -> Result<Vec<u8>, String> {
+    std::fs::write(folder.join("host.comp"), shader).unwrap();
+    let compiler = Command::new("glslangValidator")
+        .args(["--target-env", "vulkan1.1", "-IDIR/single", "host.comp", "-o", "host.spv"])
+        .current_dir(folder)
+        .output()
+        .expect("glslangValidator: tools/setup.sh test installs it");
+    let said = String::from_utf8_lossy(&compiler.stdout).into_owned();
+    if compiler.status.success() { Ok(std::fs::read(folder.join("host.spv")).unwrap()) } else { Err(said) }
+}
+
+#[test]
+fn the_library_in_one_file_passes_its_self_test_and_has_the_options_that_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let sphere = "#version 450\n#extension GL_GOOGLE_include_directive : require\n\
+        #include \"arealight/arealight.glsl\"\nArealightSphereLight light;\nvoid main() {}\n";
+    export(folder, &["--effects", "diffuse,glossy,sphere"]);
+    compile_single(folder, sphere).unwrap();
+    // The twin: without the effect
+    export(folder, &[]);
+    assert!(compile_single(folder, sphere).unwrap_err().contains("ArealightSphereLight"));
+
+    let Some(engine) = arealight_tests::TestEngine::new() else { return };
+    let example = std::fs::read_to_string(folder.join("DIR/examples/self_test.comp")).unwrap();
+    let wrong_points = |shader: &str| {
+        let module = compile_single(folder, shader).unwrap();
+        let kernel: &'static Kernel = Box::leak(Box::new(Kernel::new("self_test", module.leak())));
+        engine.dispatch::<u32>(kernel, &[], &[engine.table()], 1)[0]
+    };
+    assert_eq!(wrong_points(&example), 0);
+    // The twin: a bridge that reads rows for columns
+    let swapped = example.replace("ivec3(texel, layer)", "ivec3(texel.yx, layer)");
+    assert!(wrong_points(&swapped).count_ones() >= 5);
 }

@@ -1,19 +1,53 @@
 //! The GLSL library in one file, for people who paste.
 
+use arealight::Effects;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 /// What is written as one file each: below `include/` in an export, and below `single/`.
 pub const FILES: [&str; 2] = ["arealight/arealight.glsl", "arealight/self_test.glsl"];
 
+/// The first line of what is pasted, in every language.
+pub const LICENCE_LINE: &str = concat!(
+    "// Arealight ",
+    env!("CARGO_PKG_VERSION"),
+    ", ",
+    env!("CARGO_PKG_LICENSE"),
+    ", as `arealight export` wrote it.\n"
+);
+
+/// The library in one file, with the options' defaults as these effects need them: a host may still define
+/// its own.
+pub fn resolved(mut text: String, effects: Effects) -> String {
+    let textured = effects.intersects(Effects::IMAGES);
+    let options = Effects::all().iter().map(|effect| (option_of(effect), effects.contains(effect)));
+    for (option, is_on) in options.chain([("LIGHT_TEXTURES".into(), textured)]) {
+        let define = |value: u8| format!("#define AREALIGHT_{option} {value}\n");
+        text = text.replace(&define(u8::from(!is_on)), &define(u8::from(is_on)));
+    }
+    text
+}
+
+/// The option that switches an effect, or would: three need none.
+fn option_of(effect: Effects) -> String {
+    match effect.to_string().as_str() {
+        "glossy" => "SPECULAR".into(),
+        "ellipse" => "DISKS".into(),
+        "mesh" => "MESHES".into(),
+        "profile" => "SHAPED".into(),
+        "textured" => "TEXTURED_POLYGONS".into(),
+        "textured_ellipse" => "TEXTURED_DISKS".into(),
+        name @ ("polygon" | "sphere" | "tube") => name.to_uppercase() + "S",
+        name => name.to_uppercase(),
+    }
+}
+
 /// The library's file of this name, after all that it includes, each once. What is included under options
 /// alone is below any of these.
 pub fn single(library: &[(&str, &str)], name: &str) -> String {
     let mut text = format!(
-        "// Arealight {}, {}. The library in one file, as `arealight export` wrote it: paste or include it.\n\
-         // Define options before it, and the bridges after it: docs/embed-glsl.md.\n",
-        env!("CARGO_PKG_VERSION"),
-        env!("CARGO_PKG_LICENSE"),
+        "{LICENCE_LINE}// The library in one file: paste or include it. Define options before it, and the bridges\n\
+         // after it: docs/embed-glsl.md. Call arealight_point, arealight_radiance, and arealight_self_test.\n",
     );
     let mut found = Found { library, order: vec![], needed_by: BTreeMap::new() };
     found.visit(name, None);
@@ -75,6 +109,21 @@ fn included(line: &str) -> Option<&str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_effect_switches_its_option() {
+        let options =
+            crate::commands::export::LIBRARY.iter().find(|(path, _)| path.ends_with("/options.glsl"));
+        let text = |effects| resolved(options.unwrap().1.replace("\r\n", "\n"), effects);
+        let without = text(Effects::empty());
+        let idle = Effects::all().iter().filter(|effect| text(*effect) == without);
+        let idle: Effects = idle.collect();
+        assert_eq!(idle, Effects::SPECULAR_INPUT | Effects::TRANSMISSION | Effects::GLASS);
+        let on = text(Effects::GLOSSY | Effects::TEXTURED);
+        for line in ["SPECULAR 1", "DIFFUSE 0", "LIGHT_TEXTURES 1", "TEXTURED_DISKS 0"] {
+            assert!(on.contains(&format!("#define AREALIGHT_{line}\n")), "{line}");
+        }
+    }
 
     #[test]
     fn a_file_is_there_once_below_any_option_that_needs_it() {

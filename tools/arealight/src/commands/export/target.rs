@@ -2,6 +2,7 @@
 
 use super::File;
 use super::interface;
+use super::single::LICENCE_LINE;
 use super::translate::{Language, Translated, translate};
 use crate::failure::Failure;
 use arealight::plan::{ShadeOptions, shade_specialization};
@@ -22,8 +23,9 @@ pub struct TargetArguments {
         requires = "effects"
     )]
     targets: Vec<Language>,
-    /// The effects that those kernels have, of `arealight effects SCENE`; nothing else is in them
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = effect, requires = "targets")]
+    /// The effects that those kernels have, of `arealight effects SCENE`, and nothing else; and the options'
+    /// defaults in `single/arealight/arealight.glsl`
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = effect)]
     effects: Vec<Effects>,
     /// What those kernels read positions from
     #[arg(long, value_enum, value_name = "WHAT", default_value_t = Position::Image, requires = "targets")]
@@ -57,26 +59,33 @@ fn effect(name: &str) -> Result<Effects, String> {
         .ok_or_else(|| format!("there is no such effect; there are: {}", Effects::all()))
 }
 
+/// What hosts of every language run once to see that their table is right: `shaders/examples/self_test.comp`.
+const SELF_TEST: &[u8] = include_bytes!("../../../../../benches/spirv/examples/self_test.spv");
+
 impl TargetArguments {
+    /// The effects that are named, if any.
+    pub fn effects(&self) -> Option<Effects> {
+        (!self.effects.is_empty()).then(|| self.effects.iter().copied().collect())
+    }
+
     /// The files of every target, and what the manifest says of them.
     pub fn files(&self) -> Result<(Vec<File>, Map<String, Value>), Failure> {
         let (mut files, mut described) = (vec![], Map::new());
-        if self.targets.is_empty() {
-            return Ok((files, described));
-        }
-        let effects: Effects = self.effects.iter().copied().collect();
+        let Some(effects) = self.effects() else { return Ok((files, described)) };
         check(effects)?;
         let spirv = frozen(effects, self.position)?;
         for language in &self.targets {
-            let translated = translate(&spirv, *language)
-                .map_err(|message| Failure::Argument { argument: "--target", message })?;
-            let path = format!("{}/shade.{}", language.folder(), language.ending());
-            described.insert(language.folder().into(), self.describe(effects, &path, &translated));
-            files.push(File {
-                path,
-                bytes: translated.text.into_bytes(),
-                content: format!("the kernel shade for {effects}, in {language}; see `targets`"),
-            });
+            let mut add = |spirv: &[u32], name: &str, content: String| {
+                let translated = translate(spirv, *language)
+                    .map_err(|message| Failure::Argument { argument: "--target", message })?;
+                let path = format!("{}/{name}.{}", language.folder(), language.ending());
+                let bytes = (LICENCE_LINE.to_owned() + &translated.text).into_bytes();
+                files.push(File { path: path.clone(), bytes, content });
+                Ok(self.describe(effects, &path, &translated))
+            };
+            let content = format!("the kernel shade for {effects}, in {language}; see `targets`");
+            described.insert(language.folder().into(), add(&spirv, "shade", content)?);
+            add(&words(SELF_TEST), "self_test", format!("the self-test in {language}: table, result"))?;
         }
         Ok((files, described))
     }
@@ -113,14 +122,16 @@ fn frozen(effects: Effects, position: Position) -> Result<Vec<u32>, Failure> {
     };
     // Of the counts only whether there are quads is in the kernel: it has them, and a frame says how many
     let lights = LightSummary { light_count: 1, quad_count: 1, effects, ..LightSummary::default() };
-    let words: Vec<u32> =
-        SHADE_PORTABLE.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
-    freeze(&words, &shade_specialization(options, lights)).ok_or_else(|| Failure::Argument {
+    freeze(&words(SHADE_PORTABLE), &shade_specialization(options, lights)).ok_or_else(|| Failure::Argument {
         argument: "--target",
         message: "the kernel computes of its constants what cannot be known before it runs; this is a fault \
         of Arealight"
             .into(),
     })
+}
+
+fn words(spirv: &[u8]) -> Vec<u32> {
+    spirv.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
 }
 
 #[cfg(test)]
@@ -171,9 +182,7 @@ mod tests {
 
     #[test]
     fn a_kernel_that_is_not_frozen_is_refused() {
-        let words: Vec<u32> =
-            SHADE_PORTABLE.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
-        let refused = translate(&words, Language::Webgpu).err().unwrap();
+        let refused = translate(&words(SHADE_PORTABLE), Language::Webgpu).err().unwrap();
         assert!(refused.contains("naga cannot read the kernel"), "{refused}");
     }
 
