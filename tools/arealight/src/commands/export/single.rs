@@ -46,8 +46,9 @@ fn option_of(effect: Effects) -> String {
 /// alone is below any of these.
 pub fn single(library: &[(&str, &str)], name: &str) -> String {
     let mut text = format!(
-        "{LICENCE_LINE}// The library in one file: paste or include it. Define options before it, and the bridges\n\
-         // after it: docs/embed-glsl.md. Call arealight_point, arealight_radiance, and arealight_self_test.\n",
+        "{LICENCE_LINE}// The library in one file: paste or include it. Define options before it, and the\n\
+         // bridges after it: docs/embed-glsl.md. Call arealight_point and arealight_radiance; and, of\n\
+         // self_test.glsl, arealight_self_test.\n",
     );
     let mut found = Found { library, order: vec![], needed_by: BTreeMap::new() };
     found.visit(name, None);
