@@ -79,7 +79,8 @@ pub struct Row {
     pub lamps: usize,
     /// How they come to a pixel.
     pub way: String,
-    /// The mean over the pixels of the floor of the lights that each is shaded with; 0 where that is not known.
+    /// The mean over the pixels of the floor of the lights that each is shaded with; 0 where that is not
+    /// known.
     pub lights_per_pixel: f64,
     /// Milliseconds of the device, with the lists where it makes them.
     pub milliseconds: f64,
@@ -316,7 +317,8 @@ fn difference(truth: &[Vec4], found: &[Vec4]) -> [f64; 2] {
     [(squares / count).sqrt() / (mean / count).max(1e-30), largest]
 }
 
-/// A square floor of `side` metres and of this roughness about the origin, in y, of this albedo; and a camera from above that sees all of it in a picture of `aspect`. Without lights.
+/// A square floor of `side` metres and of this roughness about the origin, in y, of this albedo; and a camera
+/// from above that sees all of it in a picture of `aspect`. Without lights.
 fn floor(roughness: f32, side: f64, aspect: f64, albedo: f32) -> Scene {
     let sweep = include_bytes!("../../scenes/sweep.glb");
     let mut scene = Scene::from_bytes(sweep, "floor").expect("the scene in the repository is valid");

@@ -84,7 +84,8 @@ uint before(uint first, uint end) {
     return min(max(first, end) - first, TILE_PIXELS);
 }
 
-// Lists the lights in the order of the buffers. How many are convex quads, polygons in all, and lights in all.
+// Lists the lights in the order of the buffers. How many are convex quads, polygons in all, and lights in
+// all.
 uvec3 list_lights() {
     uint invocation = gl_LocalInvocationIndex;
     if (invocation < 2u) {

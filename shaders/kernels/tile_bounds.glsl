@@ -7,8 +7,8 @@
 const float TILE_FAR = 3e38;
 const float TILE_PI = 3.1415927;
 
-// Its pixels, an invocation each; memory that they share: values of theirs, eight at a time, and then free for
-// other use.
+// Its pixels, an invocation each; memory that they share: values of theirs, eight at a time, and then free
+// for other use.
 const uint TILE_PIXELS = 64u;
 shared vec4 tile_scratch[2u * TILE_PIXELS];
 shared float tile_parts[TILE_PIXELS];

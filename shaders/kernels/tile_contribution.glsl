@@ -11,9 +11,9 @@
 // table's envelope, a / (b + 1 - cos delta)^2 at the angle delta from the mirror direction, times the sine of
 // the elevation above the lobe's horizon (LobeHorizon in Rust).
 //
-// Below. What Lambert's lobe alone reflects of a light that is wholly above the surface: the least solid angle
-// times the least cosine, by the same inequality of Jensen's with 1 / x^2. A sphere's is r^2 h / D^3, with the
-// height of its center.
+// Below. What Lambert's lobe alone reflects of a light that is wholly above the surface: the least solid
+// angle times the least cosine, by the same inequality of Jensen's with 1 / x^2. A sphere's is r^2 h / D^3,
+// with the height of its center.
 
 // Bounds of the pixels' fitted lobes.
 struct TileLobe {

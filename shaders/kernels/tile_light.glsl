@@ -123,8 +123,8 @@ bool is_turned_away(uint index, TileLight light, vec2 behind) {
 //
 // All points of a flat light are as far in front of a point, f: it is area f times the mean over the area of
 // 1 / d^3, d being the distance. That is at least 1 / (D^2 + radius^2)^1.5, for the distance D of its center,
-// which is that of its area: 1 / x^1.5 is convex (Jensen's inequality), and the mean of d^2 is D^2 and that of
-// the squares about the center. A sphere's is at least pi r^2 / D^2.
+// which is that of its area: 1 / x^1.5 is convex (Jensen's inequality), and the mean of d^2 is D^2 and that
+// of the squares about the center. A sphere's is at least pi r^2 / D^2.
 struct TileSpan {
     float per_distance; // the inverse of the least distance of a point of it
     float per_far;      // of the largest of its center, and its radius

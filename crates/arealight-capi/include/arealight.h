@@ -576,8 +576,8 @@ typedef struct ArealightMediumOptions {
     uint32_t by_image;
     // 1: a froxel's distance is drawn within it, by ArealightMediumFrame.seed. Else 0.
     uint32_t jitter;
-    // 1: froxels that surfaces hide from every pixel are filled, too. 0: they hold nothing, and positions are
-    // of the picture's size.
+    // 1: froxels that surfaces hide from every pixel are filled, too. 0: they hold nothing, and positions
+    // are of the picture's size.
     uint32_t fill_hidden;
 } ArealightMediumOptions;
 
@@ -740,8 +740,8 @@ typedef struct ArealightMediumFrame {
     float farthest;
     // Of random numbers: one more in each frame.
     uint32_t seed;
-    // Lights are left out of froxels that together add no more than this to a pixel's radiance, in the sum of
-    // the channels, for each unit of albedo. 0: only lights that nothing comes of.
+    // Lights are left out of froxels that together add no more than this to a pixel's radiance, in the sum
+    // of the channels, for each unit of albedo. 0: only lights that nothing comes of.
     float cull_radiance;
 } ArealightMediumFrame;
 

@@ -30,8 +30,8 @@ pub struct ArealightMediumOptions {
     pub by_image: u32,
     /// 1: a froxel's distance is drawn within it, by ArealightMediumFrame.seed. Else 0.
     pub jitter: u32,
-    /// 1: froxels that surfaces hide from every pixel are filled, too. 0: they hold nothing, and positions are
-    /// of the picture's size.
+    /// 1: froxels that surfaces hide from every pixel are filled, too. 0: they hold nothing, and positions
+    /// are of the picture's size.
     pub fill_hidden: u32,
 }
 
@@ -74,8 +74,8 @@ pub struct ArealightMediumFrame {
     pub farthest: f32,
     /// Of random numbers: one more in each frame.
     pub seed: u32,
-    /// Lights are left out of froxels that together add no more than this to a pixel's radiance, in the sum of
-    /// the channels, for each unit of albedo. 0: only lights that nothing comes of.
+    /// Lights are left out of froxels that together add no more than this to a pixel's radiance, in the sum
+    /// of the channels, for each unit of albedo. 0: only lights that nothing comes of.
     pub cull_radiance: f32,
 }
 
