@@ -227,7 +227,7 @@ fn lists_and_hidden_froxels_change_no_pixel_beyond_what_it_may_lose() {
 #[test]
 fn an_image_of_an_even_medium_is_that_medium() {
     let Some(engine) = TestEngine::new() else { return };
-    let (host, scene) = (engine.host(), crowded(30));
+    let (host, scene) = (engine.host(), crowded(40)); // enough for lists
     let (format, usage) = (vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::SAMPLED);
     let [width, height, depth] = FROXELS;
     let description = ImageDescription { name: "medium", extent: [width, height], layers: 1, format, usage };
