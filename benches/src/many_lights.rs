@@ -56,7 +56,7 @@ pub enum Way {
 /// What is compared.
 pub const WAYS: [Way; 3] = [Way::All, Way::Tiles(0.01), Way::Tiles(0.1)];
 
-/// Likewise in fog.
+/// What is compared in fog.
 pub const FOG_WAYS: [Way; 4] =
     [Way::Fog(None), Way::Fog(Some(0.0)), Way::Fog(Some(0.001)), Way::Fog(Some(0.01))];
 
@@ -171,9 +171,7 @@ impl<'a> Frame<'a> {
         let mut bytes = 0;
         let (seconds, lights_per_pixel) = match way {
             Way::All => {
-                // Where that takes long one run is enough: a pipeline is there from fewer lamps
-                let rounds = if self.scene.lights.len() > 1000 { 1 } else { self.options.rounds };
-                let seconds = self.fastest(rounds, SceneRenderer::shade_as)?;
+                let seconds = self.fastest(self.rounds_with_all(), SceneRenderer::shade_as)?;
                 self.exact = self.renderer.radiance()?;
                 (seconds, self.scene.lights.len() as f64)
             }
@@ -201,6 +199,12 @@ impl<'a> Frame<'a> {
         })
     }
 
+    /// Runs of a frame with all lights. Where that takes long one is enough: a pipeline is there from fewer
+    /// lamps.
+    fn rounds_with_all(&self) -> u32 {
+        if self.scene.lights.len() > 1000 { 1 } else { self.options.rounds }
+    }
+
     /// Seconds of froxels with all lights or by lists, for 8 x 8 pixels each.
     fn fog(&mut self, culled: Option<f32>) -> Result<f64, EngineError> {
         let least_lights = if culled.is_some() { 0 } else { u32::MAX };
@@ -215,7 +219,7 @@ impl<'a> Frame<'a> {
             farthest: 2.0 * FLOOR as f32,
             cull_radiance: culled.unwrap_or_default(),
         };
-        let rounds = if culled.is_none() && self.scene.lights.len() > 1000 { 1 } else { self.options.rounds };
+        let rounds = if culled.is_none() { self.rounds_with_all() } else { self.options.rounds };
         let seconds = self.fastest(rounds, |renderer, shade| {
             renderer.shade_as(ShadeOptions { surfaces: Effects::DIFFUSE, ..shade })?;
             renderer.add_fog(&view, &fog, 0)

@@ -104,10 +104,9 @@ float phase_most(TileLight light, vec3 offset, float distance) {
     float radius = light.radius + light.margin + cell.radius;
     float spread = cell.spread + (radius < distance ? 1.4143 * radius / distance : 2.0);
     float cosine = dot(offset, cell.away) / max(distance, 1e-30);
-    float g = clamp(constants.anisotropy, -0.95, 0.95);
+    float g = constants.anisotropy;
     float along = min((g < 0.0 ? -cosine : cosine) + spread, 1.0);
-    float square = 1.0 + g * g - 2.0 * abs(g) * along;
-    return PHASE_EXCESS * (1.0 - g * g) / (4.0 * TILE_PI * square * sqrt(square));
+    return PHASE_EXCESS * arealight_henyey_greenstein(min(abs(g), AREALIGHT_MAX_ANISOTROPY), along);
 }
 
 // For list_lights.glsl.

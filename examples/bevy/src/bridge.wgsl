@@ -31,11 +31,13 @@ fn unpack(@builtin(global_invocation_id) id: vec3<u32>) {
     let place = vec2(words.w & 0xfffu, words.w >> 12u & 0xfffu);
     let f0 = 0.16 * material.x * material.x;
     let coat_bits = words.z >> 24u;
-    textureStore(normal_roughness, pixel, vec4(from_octahedron(vec2<f32>(place) / 4095.0), color_roughness.w));
+    let normal = from_octahedron(vec2<f32>(place) / 4095.0);
+    textureStore(normal_roughness, pixel, vec4(normal, color_roughness.w));
     textureStore(base_color_metalness, pixel,
                  is_lit * vec4(pow(color_roughness.rgb, vec3(2.2)), material.y));
     textureStore(reflectances, pixel, is_lit * vec4(vec3(f0), min(50.0 * f0, 1.0)));
-    textureStore(coat, pixel, vec4(is_lit * f32(coat_bits & 0xfu) / 15.0, f32(coat_bits >> 4u) / 30.0, 0.0, 0.0));
+    let coat_weight = is_lit * f32(coat_bits & 0xfu) / 15.0;
+    textureStore(coat, pixel, vec4(coat_weight, f32(coat_bits >> 4u) / 30.0, 0.0, 0.0));
 }
 
 // A triangle that covers the picture.

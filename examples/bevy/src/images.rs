@@ -33,7 +33,7 @@ pub(crate) struct LightImages {
 }
 
 impl LightImages {
-    /// Layers for some images, black, of which there may be none.
+    /// Black layers for so many images, from 0.
     pub fn new(device: &RenderDevice, images: u32) -> Self {
         let layers = LAYERS * images.next_power_of_two();
         let texture = device.create_texture(&TextureDescriptor {
@@ -61,7 +61,7 @@ impl LightImages {
         images as u32 * LAYERS <= self.texture.depth_or_array_layers()
     }
 
-    /// A mip of an image, of which the first of its layers is read.
+    /// A mip of an image's first layer.
     fn mip(&self, image: u32, mip: u32) -> TextureView {
         self.texture.create_view(&TextureViewDescriptor {
             dimension: Some(TextureViewDimension::D2),

@@ -51,7 +51,7 @@ fn material(metallic: u8, coat: f32) -> (StandardMaterial, Surface) {
     (bevys, ours.surface())
 }
 
-/// A light of each kind above the floor, none of which is symmetrical.
+/// A light of each kind above the floor, without symmetry.
 fn lights() -> Vec<(&'static str, AreaLight, Transform)> {
     let xy = |points: &[[f64; 2]]| points.iter().map(|[x, y]| DVec3::new(*x, *y, 0.0)).collect::<Vec<_>>();
     let arrow = xy(&[[0.0, 0.8], [0.8, -0.6], [0.0, -0.2], [-0.8, -0.6]]);
@@ -79,8 +79,7 @@ fn lights() -> Vec<(&'static str, AreaLight, Transform)> {
     .to_vec()
 }
 
-/// The parts of a light in the world, each of which the oracle knows, under a scale that is the same in each
-/// axis.
+/// A light in the world in parts that the oracle knows, under a uniform scale.
 fn in_world(light: &AreaLight, transform: &Transform) -> Vec<Light> {
     let point = |place: DVec3| {
         let moved = transform.transform_point(Vec3::from_array(place.as_vec3().to_array()));

@@ -164,7 +164,7 @@ fn no_fog_changes_nothing_and_much_of_it_gives_numbers() {
     }
 }
 
-/// slats.glb with small lights of every kind in it, some of which shine to both sides or in a cone.
+/// slats.glb with small lights of every kind: some are two-sided, some shine in a cone.
 fn crowded(count: usize) -> Scene {
     let mut scene = scene("slats.glb");
     let mut random = Random::new(5);
