@@ -4,7 +4,7 @@
 // The lights of a cell, 8 x 8 froxels of a slice, which a workgroup fills: listed in memory that it shares,
 // with MEDIUM_LISTS. What is found holds for every point of the cell:
 //
-// - A light is left out where none is before it, or in the cone of its profile.
+// - A light is left out where none is before it, in the cone of its profile, or beyond its opening.
 // - Lights are left out too whose contributions add up to no more than a radiance: at most a solid angle's,
 //   times the phase function's most at the angles that there are between the light's and the cell's points,
 //   dimmed as over the least distance by the least of the froxels' extinctions. A pixel loses no more than

@@ -48,16 +48,20 @@ const uint EFFECT_THIN_FILM = 8388608u;
 const uint EFFECT_GLASS = 16777216u;
 // Some light has a profile.
 const uint EFFECT_PROFILE = 33554432u;
+// Some light is seen through an opening.
+const uint EFFECT_OPENING = 67108864u;
 
-// Some polygon is not a convex quad without an image or a profile: Effects::BEYOND_QUADS in Rust.
-const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH | EFFECT_PROFILE;
+// Some light has a profile or an opening.
+const uint EFFECTS_OF_SHAPED = EFFECT_PROFILE | EFFECT_OPENING;
+// Some polygon is not a convex quad without an image, a profile or an opening: Effects::BEYOND_QUADS in Rust.
+const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH | EFFECTS_OF_SHAPED;
 // Some light is a disk, sphere or tube: Effects::SHAPES in Rust.
 const uint EFFECTS_OF_SHAPES = EFFECT_ELLIPSE | EFFECT_SPHERE | EFFECT_TUBE;
 
 // Which kinds of lights there may be, apart from convex quads without an image.
 const bool HAS_POLYGONS = (EFFECTS & EFFECTS_OF_POLYGONS) != 0u;
 const bool HAS_MESHES = (EFFECTS & EFFECT_MESH) != 0u;
-const bool HAS_PROFILES = (EFFECTS & EFFECT_PROFILE) != 0u;
+const bool HAS_SHAPED = (EFFECTS & EFFECTS_OF_SHAPED) != 0u;
 const bool HAS_SHAPES = (EFFECTS & EFFECTS_OF_SHAPES) != 0u;
 const bool HAS_DISKS = (EFFECTS & EFFECT_ELLIPSE) != 0u;
 const bool HAS_SPHERES = (EFFECTS & EFFECT_SPHERE) != 0u;
@@ -90,6 +94,7 @@ const int LOBES_FORMULA = 1;
 #define AREALIGHT_TEXTURED_POLYGONS ((EFFECTS & EFFECT_TEXTURED) != 0u)
 #endif
 #define AREALIGHT_TEXTURED_DISKS ((EFFECTS & EFFECT_TEXTURED_ELLIPSE) != 0u)
+#define AREALIGHT_OPENINGS ((EFFECTS & EFFECT_OPENING) != 0u)
 #ifndef AREALIGHT_DIFFERENCE
 #define AREALIGHT_DIFFERENCE (FORM_FACTOR == FORM_FACTOR_DIFFERENCE)
 #endif

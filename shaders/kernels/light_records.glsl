@@ -14,7 +14,7 @@ struct ArealightGpuLight {
     uint vertex_count;
     uint flags;
     uint texture_layer;
-    uint profile; // the first row of its profile, with LIGHT_PROFILE
+    uint shaping; // the first row of its opening, with LIGHT_OPENING, and of its profile, with LIGHT_PROFILE
 };
 
 #ifdef LIGHTS_BINDING
@@ -28,6 +28,8 @@ const uint LIGHT_FLAT = 2u; // its vertices lie in a plane, to 1e-4 of its size
 const uint LIGHT_MESH = 4u; // several faces
 const uint LIGHT_QUAD = 8u; // convex, of at most four vertices
 const uint LIGHT_PROFILE = 16u; // the upper half of the flags is the cosine where it ends, of 65535
+const uint LIGHT_OPENING = 32u; // it is seen through an opening
+const uint LIGHT_SHAPED = 48u; // one or the other, or both
 const uint NO_LIGHT_TEXTURE = 0xffffffffu;
 
 struct ArealightGpuShape {

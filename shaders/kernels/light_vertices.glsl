@@ -6,7 +6,8 @@
 
 // Of each light its vertices in xyz, from its center. A mesh has before each face's vertices its unit normal
 // in xyz and their count in w. A light with an image has after its vertices the image's place: (corner, low
-// u), (axis u, low v), (axis v, width), (height). What a profile has: arealight_bridge_profile.
+// u), (axis u, low v), (axis v, width), (height). What an opening
+// and a profile have after that: arealight_bridge_profile.
 layout(set = 0, binding = LIGHTS_BINDING + 1, std430) readonly buffer LightVertices {
     vec4 light_vertices[];
 };

@@ -7,7 +7,7 @@
 #include "light_records.glsl"
 #include "light_textures.glsl"
 #include "arealight/arealight.glsl"
-#include "light_vertices.glsl"
+#include "shaping.glsl"
 
 ArealightQuadLight load_quad(ArealightGpuLight record) {
     uint first = record.first_vertex;
@@ -43,7 +43,8 @@ ArealightPolygonLight load_polygon(ArealightGpuLight record) {
 
 #if AREALIGHT_SHAPED
 ArealightShapedLight load_shaped(ArealightGpuLight record) {
-    return ArealightShapedLight(load_polygon(record), record.radiance, record.profile);
+    uvec2 rows = shaping_rows(record);
+    return ArealightShapedLight(load_polygon(record), record.radiance, rows.x, rows.y);
 }
 #endif
 

@@ -4,7 +4,7 @@
 // What a point in a medium scatters of a light of a record, of any kind that is compiled.
 
 vec3 in_scattered(ArealightMediumPoint medium, ArealightGpuLight record) {
-    if (HAS_PROFILES && (record.flags & LIGHT_PROFILE) != 0u) {
+    if (HAS_SHAPED && (record.flags & LIGHT_SHAPED) != 0u) {
         return arealight_in_scattered(medium, load_shaped(record));
     }
     if (HAS_MESHES && (record.flags & LIGHT_MESH) != 0u) {

@@ -33,7 +33,7 @@ void add_light_at(inout PixelRadiance sum, uint index, vec3 radiance, ArealightR
 
 void shade_polygon(inout PixelRadiance sum, ArealightPoint point, uint index) {
     ArealightGpuLight record = lights[index];
-    if (HAS_PROFILES && (record.flags & LIGHT_PROFILE) != 0u) {
+    if (HAS_SHAPED && (record.flags & LIGHT_SHAPED) != 0u) {
         add_light_at(sum, index, record.radiance, arealight_reflected(point, load_shaped(record)));
     } else if (HAS_MESHES && (record.flags & LIGHT_MESH) != 0u) {
         add_light_at(sum, index, record.radiance, arealight_reflected(point, load_mesh(record)));

@@ -10,12 +10,12 @@
 
 #include "table_image.glsl"
 #include "arealight/material.glsl"
-#include "arealight/lights/profile.glsl"
 #include "arealight/shadows/ray_origin.glsl"
 #include "arealight/shadows/sequence.glsl"
 #define PICKS_ACCESS readonly
 #include "shadow_picks.glsl"
 #include "picked_light.glsl"
+#include "shaping.glsl"
 
 #include "blocker_bridge.glsl"
 
@@ -91,9 +91,9 @@ float penumbra_width(PickedLight light, float part, float distance, float alpha)
     return min(size * part / max(1.0 - part, 1e-3), size * 16.0);
 }
 
-// A ray to a light with a profile: of several to all of the light one, by the profile's factor.
-bool draw_through_profile(ArealightGpuLight record, ArealightShadowOutline outline, mat3 to_frame, mat3 space,
-                          vec2 random, out ArealightShadowRay ray) {
+// A ray to a light with a profile or an opening: of several to all of the light one, by their factor.
+bool draw_shaped(ArealightGpuLight record, ArealightShadowOutline outline, ArealightPoint point, mat3 space,
+                 vec2 random, out ArealightShadowRay ray) {
     const int CANDIDATES = 8;
     float choice = fract(dot(random, vec2(37.31, 91.73)));
     float sum = 0.0;
@@ -102,9 +102,9 @@ bool draw_through_profile(ArealightGpuLight record, ArealightShadowOutline outli
         ArealightShadowRay one;
         // Spread over the light: the sequence of the plastic number
         vec2 place = fract(random + float(index) * vec2(0.75487767, 0.56984029));
-        if (arealight_draw_ray(outline, to_frame, space, place, one)) {
+        if (arealight_draw_ray(outline, point.to_frame, space, place, one)) {
             vec3 offset = one.distance * one.direction;
-            float factor = arealight_profile_factor(record.profile, record.normal, offset);
+            float factor = shaping_factor(record, record.normal, point.position, offset);
             if (factor > 0.0 && arealight_choose(choice, sum, factor)) {
                 ray = one;
                 is_drawn = true;
@@ -124,8 +124,8 @@ vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec2 rand
     ArealightShadowRay ray;
     bool is_drawn;
     uint index = pick & PICK_INDEX;
-    if (HAS_PROFILES && (pick & PICK_SHAPE) == 0u && (lights[index].flags & LIGHT_PROFILE) != 0u) {
-        is_drawn = draw_through_profile(lights[index], outline, point.to_frame, space, random, ray);
+    if (HAS_SHAPED && (pick & PICK_SHAPE) == 0u && (lights[index].flags & LIGHT_SHAPED) != 0u) {
+        is_drawn = draw_shaped(lights[index], outline, point, space, random, ray);
     } else {
         is_drawn = arealight_draw_ray(outline, point.to_frame, space, random, ray);
     }

@@ -7,6 +7,7 @@
 // Margins: 1e-5 of the distances, which is a hundred times what positions and planes are rounded by, and 1e-3
 // of the radius for lights that are flat to 1e-4 of it.
 
+#include "shaping.glsl"
 #include "tile_bounds.glsl"
 
 TileBox tile_position();
@@ -35,7 +36,7 @@ TileLight polygon_light(uint index) {
     light.radiance = sum_of(record.radiance);
     light.area = record.area * (record.radius * record.radius);
     light.least = light.area;
-    if (HAS_PROFILES && (record.flags & LIGHT_PROFILE) != 0u) {
+    if (HAS_SHAPED && (record.flags & LIGHT_SHAPED) != 0u) {
         light.least = 0.0;
     }
     // What an image shows may be brighter than the light, or black
@@ -88,6 +89,26 @@ bool is_outside_cone(uint index, TileLight light, float before) {
     return nearest > 0.0 && highest < float(flags >> 16) * (1.0 / 65535.0) * nearest;
 }
 
+// Whether an opening hides a light from all of a tile.
+bool is_outside_opening(uint index, float margin) {
+    uint flags = lights[index].flags;
+    if ((flags & LIGHT_OPENING) == 0u) {
+        return false;
+    }
+    uint opening = lights[index].shaping;
+    bool is_housed = arealight_bridge_profile(opening).w != 0.0;
+    bool is_outside = false;
+    for (uint plane = 0u; plane <= 4u; plane++) {
+        vec4 row = arealight_bridge_profile(opening + AREALIGHT_OPENING_PLANES + plane);
+        vec2 heights = box_dot(tile_position(), row.xyz) + (dot(row.xyz, tile_origin()) - row.w);
+        if (plane == 0u && !is_housed && heights.x < margin) {
+            return false;
+        }
+        is_outside = is_outside || heights.y < -margin;
+    }
+    return is_outside;
+}
+
 // A light of the frame, as the pixels of the tile have it before them.
 TileLight tile_light(uint index) {
     TileLight light;
@@ -111,7 +132,11 @@ vec2 tile_behind(TileLight light) {
 bool is_turned_away(uint index, TileLight light, vec2 behind) {
     bool is_behind = light.normal != vec3(0.0) && !light.two_sided
                   && behind.x > TILE_FLATNESS * light.radius + light.margin;
-    return is_behind || (HAS_PROFILES && index < light_count() && is_outside_cone(index, light, -behind.x));
+    if (is_behind || !HAS_SHAPED || index >= light_count()) {
+        return is_behind;
+    }
+    return is_outside_cone(index, light, -behind.x)
+        || (AREALIGHT_HAS_OPENINGS && is_outside_opening(index, light.margin));
 }
 
 // Where a light is from the points of a tile, and the least and the most of its solid angle.

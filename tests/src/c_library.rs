@@ -79,6 +79,11 @@ pub const NO_LIGHT: ArealightLight = ArealightLight {
     profile_pair_count: 0,
     profile: null(),
     profile_levels: 0,
+    has_opening: 0,
+    opening_center: [0.0; 3],
+    opening_axis_u: [0.0; 3],
+    opening_axis_v: [0.0; 3],
+    opening_housed: 0,
     reserved: 0,
 };
 

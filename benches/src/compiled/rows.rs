@@ -179,8 +179,8 @@ fn other_rows() -> Vec<Row> {
     let half_vectors = Quality { specular_lobes: SpecularLobes::HalfVectors, ..exact };
     let mips = Quality { footprint: Footprint::Mips, ..exact };
     let (polygon, mesh) = (Effects::POLYGON, Effects::POLYGON | Effects::MESH);
-    // A profile is what any flat light may have: those that have none don't pay for it
-    let every_kind = (Effects::all() - Effects::SURFACES - Effects::PROFILE) | Effects::SPECULAR_INPUT;
+    // A profile or an opening is what any flat light may have: those that have none don't pay for it
+    let every_kind = (Effects::all() - Effects::SURFACES - Effects::SHAPED) | Effects::SPECULAR_INPUT;
     let (disk, textured_disk) = (Effects::ELLIPSE, Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
     vec![
         // Other kinds of light in place of quads
@@ -196,6 +196,8 @@ fn other_rows() -> Vec<Row> {
         others("spheres", "exact", Effects::SPHERE, exact),
         others("tubes", "exact", Effects::TUBE, exact),
         others("lights with profiles", "exact", Effects::PROFILE, exact),
+        others("lights behind openings", "exact", Effects::OPENING, exact),
+        others("lights with profiles behind openings", "exact", Effects::SHAPED, exact),
         // Several kinds
         shade("quads and polygons", "exact", LOBES | polygon, true, exact),
         shade("quads and disks", "exact", LOBES | disk, true, exact),

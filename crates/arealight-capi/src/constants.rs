@@ -53,6 +53,8 @@ pub const AREALIGHT_EFFECT_THIN_FILM: u32 = 8388608;
 pub const AREALIGHT_EFFECT_GLASS: u32 = 16777216;
 /// Some light has a profile.
 pub const AREALIGHT_EFFECT_PROFILE: u32 = 33554432;
+/// Some light is seen through an opening.
+pub const AREALIGHT_EFFECT_OPENING: u32 = 67108864;
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
 /// As EXACT, and relative precision for lights that look small.

@@ -8,8 +8,8 @@ use crate::constants::{
 use crate::failure::{ArealightResult, Failure, call};
 use crate::types::{ArealightLight, ArealightLightSummary, ArealightPackedLights, ArealightReach};
 use arealight::{
-    Effects, Light, LightError, LightShape, LightSummary, LightTexture, PackedLights, Profile, TubeEnds,
-    reach,
+    Effects, Light, LightError, LightShape, LightSummary, LightTexture, Opening, PackedLights, Profile,
+    TubeEnds, reach,
 };
 use glam::{DVec2, DVec3, Vec3};
 use std::ffi::{CStr, c_char, c_void};
@@ -214,12 +214,18 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
     let refused = |fault| LightError { index, name: name.clone(), fault };
     let profile =
         pairs.map(|pairs| Profile::new(&pairs, light.profile_levels)).transpose().map_err(refused)?;
+    let has_opening = read_flag(light.has_opening, &field("has_opening"))?;
+    let [opening_center, opening_u, opening_v] =
+        [light.opening_center, light.opening_axis_u, light.opening_axis_v].map(DVec3::from_array);
+    let housed = has_opening && read_flag(light.opening_housed, &field("opening_housed"))?;
+    let opening = Opening { center: opening_center, axis_u: opening_u, axis_v: opening_v, housed };
     let mut made = Light {
         name,
         radiance: Vec3::from_array(light.radiance),
         two_sided: read_flag(light.two_sided, &field("two_sided"))?,
         texture: textured.then_some(LightTexture { layer: light.texture_layer, uvs }),
         profile,
+        opening: has_opening.then_some(opening),
         shape,
     };
     if !holes.is_empty() {

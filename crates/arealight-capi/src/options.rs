@@ -116,6 +116,7 @@ mod tests {
             (c::AREALIGHT_EFFECT_THIN_FILM, Effects::THIN_FILM),
             (c::AREALIGHT_EFFECT_GLASS, Effects::GLASS),
             (c::AREALIGHT_EFFECT_PROFILE, Effects::PROFILE),
+            (c::AREALIGHT_EFFECT_OPENING, Effects::OPENING),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");
         }

@@ -220,6 +220,18 @@ pub struct ArealightLight {
     /// Read only with `profile`: how many angles divide it, 1 to 180. Of 4 the error is 1 % on Lambert
     /// surfaces and 3 % on glossy ones, of 8 less than half of it.
     pub profile_levels: u32,
+    /// 1: a disk or polygon is seen through the opening below.
+    pub has_opening: u32,
+    /// Read only with `has_opening`, as the next three: the middle of the opening, a parallelogram in an
+    /// opaque plane with all of the light on one side.
+    pub opening_center: [f64; 3],
+    /// From there to the middle of a side.
+    pub opening_axis_u: [f64; 3],
+    /// And of another.
+    pub opening_axis_v: [f64; 3],
+    /// 1: points on the light's side of the plane see nothing of it, as between a lamp's doors; 0: all of it,
+    /// as outside of a window.
+    pub opening_housed: u32,
     /// 0
     pub reserved: u32,
 }

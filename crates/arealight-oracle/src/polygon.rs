@@ -106,6 +106,24 @@ pub fn solid_angle(vertices: &[DVec3]) -> f64 {
     if sum.is_finite() { sum } else { 0.0 }
 }
 
+/// Clips a polygon where `height`, linear in the place, is 0, and keeps what is above.
+pub(crate) fn clip_by(points: Vec<DVec3>, height: impl Fn(DVec3) -> f64) -> Vec<DVec3> {
+    if points.iter().all(|point| height(*point) >= 0.0) {
+        return points;
+    }
+    let mut clipped = Vec::with_capacity(points.len() + 4);
+    for (a, b) in points.iter().zip(points.iter().cycle().skip(1)) {
+        let (over, next) = (height(*a), height(*b));
+        if over >= 0.0 {
+            clipped.push(*a);
+        }
+        if (over >= 0.0) != (next >= 0.0) {
+            clipped.push(a.lerp(*b, over / (over - next)));
+        }
+    }
+    clipped
+}
+
 /// Clips a polygon at `z + height = 0` and keeps what is above. A concave polygon may come out with edges
 /// that run back over each other along the horizon: their terms cancel.
 fn clip(points: &[DVec3], height: f64) -> Vec<DVec3> {

@@ -8,6 +8,7 @@ mod diffuse;
 pub mod footprint;
 mod half_vectors;
 mod medium;
+mod opened;
 pub mod poses;
 mod profiled;
 mod rescattered;
@@ -31,7 +32,7 @@ use crate::polygon::{above_horizon, emitted, form_factor, transformed_form_facto
 use crate::texture::Texture;
 use arealight::table::share_above_surface;
 use arealight::{
-    Horizon, Light, LightFault, LightTable, Lobes, Profile, Quality, SpecularLobes, TableSample,
+    Horizon, Light, LightFault, LightTable, Lobes, Opening, Profile, Quality, SpecularLobes, TableSample,
 };
 use coat::CoatLobe;
 use glam::{DMat3, DVec3};
@@ -43,7 +44,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// A polygon light relative to a shading point, in float64 throughout.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct RelativeLight {
     /// Vertices minus the shading point's position.
     pub vertices: Vec<DVec3>,
@@ -55,6 +56,8 @@ pub struct RelativeLight {
     pub image: Option<ShownImage>,
     /// How it changes with the angle from the front.
     pub profile: Option<Profile>,
+    /// What it is seen through, its center minus the shading point's position.
+    pub opening: Option<Opening>,
 }
 
 impl RelativeLight {
@@ -67,6 +70,7 @@ impl RelativeLight {
             two_sided: light.two_sided,
             image: None,
             profile: light.profile.clone(),
+            opening: light.opening.map(|it| Opening { center: it.center - position, ..it }),
         }
     }
 
@@ -86,7 +90,7 @@ impl RelativeLight {
 }
 
 /// The light of a surface, and how well it is known.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Truth {
     /// Outgoing radiance, W/(m² sr).
     pub radiance: DVec3,
@@ -127,15 +131,15 @@ fn uncoated_truth(
     let frame = SurfaceFrame::new(normal, view);
     let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
     let image = light.image.as_ref().map(|image| image.in_frame(&frame));
-    let region = if light.two_sided || faces_origin(&vertices) {
+    let bounds = light.bounds().filter(|_| light.two_sided || faces_origin(&vertices));
+    let region = bounds.map_or_else(Region::default, |bounds| {
         let most_texels = settings.max_evaluations / EVALUATIONS_PER_TEXEL;
-        match &image {
+        let region = match &image {
             None => Region::polygon(&vertices),
             Some(image) => image.region(&vertices, most_texels),
-        }
-    } else {
-        Region::default()
-    };
+        };
+        bounds.iter().fold(region, |region, normal| region.clipped(frame.to_surface(*normal)))
+    });
     let shown = |direction| {
         let color = image.as_ref().map_or(DVec3::ONE, |image| image.color(direction));
         let factor = light.profile.as_ref().map(|it| profiled::factor_in(it, &vertices, direction));
@@ -338,10 +342,10 @@ pub fn ltc_on(
     let frame = SurfaceFrame::new(normal, view);
     let with_film = surface;
     let surface = &surface.without_film(frame.cos_view());
-    let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
+    let seen = light.seen(&frame);
     // Integrate the transformed cosine
     let both_horizons = quality.horizon == Horizon::Both;
-    let visible = if both_horizons { above_horizon(&vertices) } else { vertices.clone() };
+    let visible = if both_horizons { above_horizon(&seen) } else { seen.clone() };
     let image = light.image.as_ref().map(|image| image.in_frame(&frame));
     let lobe = |inverse: &DMat3, above_surface: f64| {
         // What is clipped at the surface's horizon is made up for, so that the albedo stays
@@ -350,20 +354,21 @@ pub fn ltc_on(
             None => {
                 let signed = match &light.profile {
                     None => transformed_form_factor(inverse, &visible),
-                    Some(profile) => profiled::profiled(profile, &vertices, &visible, inverse),
+                    Some(profile) => profiled::profiled(profile, &seen, &visible, inverse),
                 };
                 // A profile may be brighter than 1
                 let most = light.profile.as_ref().map_or(1.0, Profile::greatest);
                 DVec3::splat((emitted(signed, light.two_sided) / share).min(most))
             }
             Some(image) => {
-                let signed = transformed_image_integral(inverse, &vertices, image, both_horizons);
+                let signed = transformed_image_integral(inverse, &seen, image, both_horizons);
                 signed.to_array().map(|channel| emitted(channel, light.two_sided) / share).into()
             }
         }
     };
+    let is_shaped = light.profile.is_some() || light.opening.is_some();
     let over_half_vectors =
-        quality.specular_lobes == SpecularLobes::HalfVectors && image.is_none() && light.profile.is_none();
+        quality.specular_lobes == SpecularLobes::HalfVectors && image.is_none() && !is_shaped;
     let glossy = if over_half_vectors {
         half_vector_part(quality, table, with_film, &frame, &visible, light.two_sided)
     } else {
@@ -374,10 +379,10 @@ pub fn ltc_on(
     let shown = match &image {
         _ if albedo == DVec3::ZERO => DVec3::ZERO,
         None if inverse == DMat3::IDENTITY && light.profile.is_none() => {
-            DVec3::splat(emitted(form_factor(&vertices), light.two_sided))
+            DVec3::splat(emitted(form_factor(&seen), light.two_sided))
         }
         Some(image) if inverse == DMat3::IDENTITY => {
-            let signed = transformed_image_integral(&inverse, &vertices, image, false);
+            let signed = transformed_image_integral(&inverse, &seen, image, false);
             signed.to_array().map(|channel| emitted(channel, light.two_sided)).into()
         }
         _ => lobe(&inverse, share_above_surface(&inverse)),

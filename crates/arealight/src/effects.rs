@@ -75,6 +75,8 @@ bitflags::bitflags! {
         const GLASS = 1 << 24;
         /// Some light has a profile ([`Light::profile`](crate::Light::profile)).
         const PROFILE = 1 << 25;
+        /// Some light is seen through an opening ([`Light::opening`](crate::Light::opening)).
+        const OPENING = 1 << 26;
     }
 }
 
@@ -82,8 +84,11 @@ impl Effects {
     /// Every kind of light but polygons and meshes.
     pub const SHAPES: Self = Self::ELLIPSE.union(Self::SPHERE).union(Self::TUBE);
 
-    /// Any of these is of lights that are no convex quads without an image or a profile.
-    pub const BEYOND_QUADS: Self = Self::POLYGON.union(Self::TEXTURED).union(Self::MESH).union(Self::PROFILE);
+    /// Any of these is of lights with a profile or an opening.
+    pub const SHAPED: Self = Self::PROFILE.union(Self::OPENING);
+
+    /// Any of these is of lights that are no convex quads without an image, a profile or an opening.
+    pub const BEYOND_QUADS: Self = Self::POLYGON.union(Self::TEXTURED).union(Self::MESH).union(Self::SHAPED);
 
     /// Every lobe: without any of these surfaces are black.
     pub const LOBES: Self = Self::DIFFUSE.union(Self::GLOSSY).union(Self::COAT).union(Self::SHEEN);
@@ -156,6 +161,7 @@ impl Effects {
             (Self::THIN_FILM, "thin_film"),
             (Self::GLASS, "glass"),
             (Self::PROFILE, "profile"),
+            (Self::OPENING, "opening"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))

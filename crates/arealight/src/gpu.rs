@@ -21,13 +21,14 @@ pub struct GpuLight {
     pub area: f32,
     /// How many rows the outline has, or the faces of a mesh.
     pub vertex_count: u32,
-    /// [`GpuLight::TWO_SIDED`], [`GpuLight::FLAT`], [`GpuLight::MESH`], [`GpuLight::QUAD`] and
-    /// [`GpuLight::PROFILE`], where they are so.
+    /// [`GpuLight::TWO_SIDED`], [`GpuLight::FLAT`], [`GpuLight::MESH`], [`GpuLight::QUAD`],
+    /// [`GpuLight::PROFILE`] and [`GpuLight::OPENING`], where they are so.
     pub flags: u32,
     /// Layer of the light textures, or [`GpuLight::NO_TEXTURE`].
     pub texture_layer: u32,
-    /// The first row of its profile in the vertex buffer, with [`GpuLight::PROFILE`]; else zero.
-    pub profile: u32,
+    /// The first row of its opening in the vertex buffer, with [`GpuLight::OPENING`], which that of its
+    /// profile follows, with [`GpuLight::PROFILE`]; else zero.
+    pub shaping: u32,
 }
 
 impl GpuLight {
@@ -43,6 +44,10 @@ impl GpuLight {
     /// It has a profile: the upper half of the flags is the cosine, of 65535, of an angle that it ends
     /// within.
     pub const PROFILE: u32 = 16;
+    /// It is seen through an opening.
+    pub const OPENING: u32 = 32;
+    /// It has one or the other, or both.
+    pub const SHAPED: u32 = Self::PROFILE | Self::OPENING;
     /// Where that cosine begins.
     pub const PROFILE_END_SHIFT: u32 = 16;
     /// No texture.

@@ -58,6 +58,7 @@
 //! | [`effects`] | what lights and surfaces need, and nothing else |
 //! | [`quality`] | the quality levels |
 //! | [`profile`] | how a light's radiance changes with the angle from its front |
+//! | [`opening`] | windows, doors and grids that lights are seen through |
 //! | [`ies`] | luminaires of LM-63 files, as profiles |
 //! | [`reach`] | how far from a light it is of any matter |
 //! | [`blockers`] | what blocks light, for shadow rays: triangles in a hierarchy |
@@ -81,6 +82,7 @@ pub mod light_fault;
 pub mod light_shape;
 pub mod light_texture;
 pub mod mesh;
+pub mod opening;
 mod output;
 pub mod packed_lights;
 pub mod plan;
@@ -111,6 +113,8 @@ pub use light_fault::{LightError, LightFault};
 pub use light_shape::{LightShape, TubeEnds};
 #[doc(inline)]
 pub use light_texture::{LightTexture, TextureMap};
+#[doc(inline)]
+pub use opening::Opening;
 #[doc(inline)]
 pub use packed_lights::{LightSummary, PackedLights};
 #[doc(inline)]

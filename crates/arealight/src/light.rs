@@ -2,7 +2,7 @@
 
 use crate::light_fault::{LightError, LightFault};
 use crate::light_texture::{LightTexture, TextureMap};
-use crate::{Effects, LightShape, Profile};
+use crate::{Effects, LightShape, Opening, Profile};
 use glam::{DVec3, Vec3};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -23,6 +23,9 @@ pub struct Light {
     /// How the radiance changes with the angle from the front: of a flat, convex polygon or a disk, which is
     /// shaded as [`Light::DISK_CORNERS`] vertices then. The back of a two-sided light has it, too.
     pub profile: Option<Profile>,
+    /// What it is seen through, if not all around: of a polygon or a disk, without a profile of a concave one,
+    /// too.
+    pub opening: Option<Opening>,
     /// What shines.
     pub shape: LightShape,
 }
@@ -53,12 +56,15 @@ impl Light {
         }
         self.shape.check_faces()?;
         self.check_radiance()?;
+        if self.is_shaped() && self.shape.is_mesh() {
+            return Err(LightFault::ProfileNotFlat);
+        }
+        if let Some(opening) = &self.opening {
+            opening.check(&self.shape)?;
+        }
         if let Some(profile) = &self.profile {
             if !(self.radiance * profile.greatest() as f32).is_finite() {
                 return Err(LightFault::BadRadiance { value: self.radiance });
-            }
-            if self.shape.is_mesh() {
-                return Err(LightFault::ProfileNotFlat);
             }
             if !self.shape.is_convex() {
                 return Err(LightFault::ProfileConcave);
@@ -98,13 +104,18 @@ impl Light {
         })
     }
 
-    /// The vertices that a disk with a profile has.
+    /// Whether it has a profile or an opening.
+    pub(crate) fn is_shaped(&self) -> bool {
+        self.profile.is_some() || self.opening.is_some()
+    }
+
+    /// The vertices that a disk with a profile or an opening has.
     pub const DISK_CORNERS: u32 = 12;
 
-    /// The light as it is packed: of a disk with a profile the polygon of its area that stands for it.
+    /// The light as it is packed: of a disk with a profile or an opening the polygon of its area that stands for it.
     pub fn outlined(&self) -> Cow<'_, Self> {
         let LightShape::Disk { center, axis_u, axis_v } = self.shape else { return Cow::Borrowed(self) };
-        if self.profile.is_none() || self.texture.is_some() {
+        if !self.is_shaped() || self.texture.is_some() {
             return Cow::Borrowed(self);
         }
         let step = TAU / f64::from(Self::DISK_CORNERS);
@@ -127,9 +138,10 @@ impl Light {
         let mut effects = Effects::empty();
         effects.set(Effects::TWO_SIDED, two_sided);
         effects.set(Effects::PROFILE, self.profile.is_some());
+        effects.set(Effects::OPENING, self.opening.is_some());
         match self.shape {
             LightShape::Polygon(_) | LightShape::Mesh { .. } => {
-                effects.set(Effects::POLYGON, self.profile.is_none() && !self.shape.is_convex_quad());
+                effects.set(Effects::POLYGON, !self.is_shaped() && !self.shape.is_convex_quad());
                 effects.set(Effects::TEXTURED, textured);
                 effects.set(Effects::MESH, self.shape.is_mesh());
             }

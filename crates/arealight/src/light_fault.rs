@@ -219,10 +219,16 @@ pub enum LightFault {
         /// What is wrong with it.
         reason: String,
     },
-    /// Only flat lights have a front to measure a profile's angles from.
+    /// An opening that a light can't be seen through.
+    #[error("opening: {reason}")]
+    BadOpening {
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// Only flat lights have a front to measure a profile's angles from, or an outline for an opening.
     #[error(
-        "profile: of a mesh, sphere, tube or disk with an image: give it to flat faces that are lights of \
-         their own"
+        "profile or opening: of a mesh, sphere, tube or disk with an image: give it to flat faces that are \
+         lights of their own"
     )]
     ProfileNotFlat,
     /// The outline of a light with a profile is clipped by disks, edge by edge.

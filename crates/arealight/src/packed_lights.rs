@@ -4,7 +4,6 @@ use crate::gpu::{GpuLight, GpuShape};
 use crate::light_fault::{LightError, LightFault};
 use crate::light_shape::area_of;
 use crate::light_texture::TextureMap;
-use crate::profile::ProfilePlace;
 use crate::{Effects, Light, LightShape, Profile};
 use glam::DVec3;
 
@@ -13,8 +12,9 @@ mod shapes;
 /// Rows of a texture's place in the vertex buffer.
 const TEXTURE_ROWS: usize = 4;
 
-/// The most rows of a profile, and of the disk that has it.
-const PROFILE_ROWS: usize = 2 + Profile::MAX_LEVELS as usize + Profile::PIECES + Light::DISK_CORNERS as usize;
+/// The most rows of an opening and a profile, and of the disk that has them.
+const SHAPING_ROWS: usize =
+    10 + Profile::MAX_LEVELS as usize + Profile::PIECES + Light::DISK_CORNERS as usize;
 
 /// Lights as the GPU reads them, relative to an origin. The arrays are uploaded to a buffer each;
 /// [`PackedLights::summary`] goes to the frame.
@@ -25,10 +25,10 @@ pub struct PackedLights {
     /// Of each of these its vertices' positions relative to its center, in xyz. A mesh has before each face's
     /// vertices a row with the face's unit normal in xyz and their count in w. After the vertices of a
     /// textured light come four rows, its image's place: (corner, lowest u), (axis of u, lowest v), (axis of
-    /// v, extent in u), (extent in v, 0, 0, 0), see [`TextureMap`]. After those of a light with a profile
-    /// come its rows: (scale, levels, piece scale, 0), of each level its
-    /// [`ProfilePlace`] and the squared tangent of its angle, of each piece's
-    /// beginning its place with the slope last, and the end with slope 0.
+    /// v, extent in u), (extent in v, 0, 0, 0), see [`TextureMap`]. After those of a light with an opening come
+    /// its rows (`lights/opening.glsl`), and after those a profile's: (scale, levels, piece scale, 0), of each
+    /// level its place ([`Profile::places`]) and the squared tangent of its angle, of each piece's beginning
+    /// its place with the slope last, and the end with slope 0.
     pub vertices: Vec<[f32; 4]>,
     /// One record per disk, sphere or tube: by kind in this order, else in the given one.
     pub shapes: Vec<GpuShape>,
@@ -129,7 +129,7 @@ impl PackedLights {
         let shift = self.vertices.len() as u32;
         self.lights.extend(other.lights.into_iter().map(|mut light| {
             light.first_vertex += shift;
-            light.profile += if light.flags & GpuLight::PROFILE == 0 { 0 } else { shift };
+            light.shaping += if light.flags & GpuLight::SHAPED == 0 { 0 } else { shift };
             light
         }));
         self.vertices.extend(other.vertices);
@@ -166,7 +166,13 @@ impl PackedLights {
             // The texture's axes keep their precision as the vertices do
             self.push_texture(map, map.corner - origin - center.as_dvec3());
         }
-        let profile = light.profile.as_ref().map_or(0, |profile| self.push_profile(profile));
+        let shaping = if light.is_shaped() { self.vertices.len() as u32 } else { 0 };
+        if let Some(opening) = &light.opening {
+            self.vertices.extend(opening.rows(vertices, origin));
+        }
+        if let Some(profile) = &light.profile {
+            self.push_profile(profile);
+        }
         let greatest = light.profile.as_ref().map_or(1.0, Profile::greatest);
         let area_vector = shape.area_vector();
         let area = area_vector.length() / radius.powi(2);
@@ -180,7 +186,7 @@ impl PackedLights {
             vertex_count,
             flags: flags(light),
             texture_layer: light.texture.as_ref().map_or(GpuLight::NO_TEXTURE, |texture| texture.layer),
-            profile,
+            shaping,
         });
         Ok(())
     }
@@ -199,18 +205,11 @@ impl PackedLights {
         }
     }
 
-    /// The rows of a profile, its greatest factor being 1, and where they begin.
-    fn push_profile(&mut self, profile: &Profile) -> u32 {
-        let first = self.vertices.len() as u32;
-        let greatest = profile.greatest();
-        let places: Vec<ProfilePlace> = profile
-            .places()
-            .into_iter()
-            .map(|it| ProfilePlace { factor: it.factor / greatest, sum: it.sum / greatest, ..it })
-            .collect();
-        let row = |place: ProfilePlace, number: f64| {
-            [place.x as f32, place.factor as f32, place.sum as f32, number as f32]
-        };
+    /// The rows of a profile, its greatest factor being 1.
+    fn push_profile(&mut self, profile: &Profile) {
+        let parts = DVec3::new(1.0, profile.greatest(), profile.greatest());
+        let places: Vec<DVec3> = profile.places().into_iter().map(|place| place / parts).collect();
+        let row = |place: DVec3, number: f64| place.as_vec3().extend(number as f32).to_array();
         self.vertices.push([
             profile.scale() as f32,
             profile.levels().len() as f32,
@@ -222,11 +221,10 @@ impl PackedLights {
             row(profile.place(&places, *cosine), tangents)
         }));
         self.vertices.extend(places.windows(2).map(|pair| {
-            let slope = (pair[1].factor - pair[0].factor) / (pair[1].x - pair[0].x);
-            row(pair[0], slope)
+            let step = pair[1] - pair[0];
+            row(pair[0], step.y / step.x)
         }));
-        self.vertices.extend(places.last().map(|place| row(ProfilePlace { factor: 0.0, ..*place }, 0.0)));
-        first
+        self.vertices.extend(places.last().map(|place| row(DVec3 { y: 0.0, ..*place }, 0.0)));
     }
 
     /// The rows of a texture's place, whose corner is `corner` from the light's center.
@@ -260,7 +258,7 @@ fn check_rows(lights: &[Light]) -> Result<(), LightError> {
     let mut count = 0;
     for (index, light) in lights.iter().enumerate() {
         count += light.shape.vertices().len() + light.shape.faces().len() + TEXTURE_ROWS;
-        count += if light.profile.is_some() { PROFILE_ROWS } else { 0 };
+        count += if light.is_shaped() { SHAPING_ROWS } else { 0 };
         if u32::try_from(count).is_err() {
             return Err(LightFault::TooManyVertices { count }.of(index, &light.name));
         }
@@ -274,6 +272,7 @@ fn flags(light: &Light) -> u32 {
         | flag(light.shape.is_flat(), GpuLight::FLAT)
         | flag(light.shape.is_mesh(), GpuLight::MESH)
         | flag(light.shape.is_convex_quad(), GpuLight::QUAD)
+        | flag(light.opening.is_some(), GpuLight::OPENING)
         | light.profile.as_ref().map_or(0, |it| {
             GpuLight::PROFILE | ((it.end() * f64::from(u16::MAX)) as u32) << GpuLight::PROFILE_END_SHIFT
         })

@@ -7,6 +7,7 @@
 //! arrives is a form factor of a part of the light, times the profile's mean there: docs/shaped-light.md.
 
 use crate::light_fault::LightFault;
+use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A factor of a light's radiance by the angle from its front: round about the normal, 0 behind.
@@ -26,18 +27,6 @@ pub struct Profile {
     end: f64,
     /// Cosines between which a mean is taken, falling.
     levels: Vec<f64>,
-}
-
-/// A place of a profile as the GPU knows it: what is from the axis up to here.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ProfilePlace {
-    /// How far from the axis: the squared sine, in parts of where the profile ends. What a surface opposite
-    /// of the light gets goes with it.
-    pub x: f64,
-    /// The factor.
-    pub factor: f64,
-    /// The integral of the factor over x from 0.
-    pub sum: f64,
 }
 
 impl Profile {
@@ -196,35 +185,35 @@ impl Profile {
         1.0 / (1.0 - self.end)
     }
 
-    /// Its places as the GPU has them, [`Profile::PIECES`] and one.
-    pub fn places(&self) -> Vec<ProfilePlace> {
-        let mut places: Vec<ProfilePlace> = Vec::with_capacity(Self::PIECES + 1);
+    /// Its places as the GPU has them, [`Profile::PIECES`] and one. Each has in x how far it is from the axis,
+    /// the squared sine, in parts of where the profile ends: what a surface opposite of the light gets goes
+    /// with it. In y the factor, and in z the factor's integral over x from 0.
+    pub fn places(&self) -> Vec<DVec3> {
+        let mut places: Vec<DVec3> = Vec::with_capacity(Self::PIECES + 1);
         for index in 0..=Self::PIECES {
             let side = index as f64 / Self::PIECES as f64;
             // Just within the end, where a profile may fall to 0 at once
             let cosine = 1.0 - (side * side).min(1.0 - 1e-9) / self.piece_scale();
             let (x, factor) = ((1.0 - cosine * cosine) * self.scale(), self.factor(cosine));
             let x = if index == Self::PIECES { 1.0 } else { x };
-            let sum =
-                places.last().map_or(0.0, |last| last.sum + 0.5 * (factor + last.factor) * (x - last.x));
-            places.push(ProfilePlace { x, factor, sum });
+            let sum = places.last().map_or(0.0, |last| last.z + 0.5 * (factor + last.y) * (x - last.x));
+            places.push(DVec3::new(x, factor, sum));
         }
         places
     }
 
     /// The place of a cosine, from those of [`Profile::places`].
-    pub fn place(&self, places: &[ProfilePlace], cosine: f64) -> ProfilePlace {
+    pub fn place(&self, places: &[DVec3], cosine: f64) -> DVec3 {
         let x = (1.0 - cosine * cosine) * self.scale();
         let side = ((1.0 - cosine) * self.piece_scale()).max(0.0).sqrt();
         let piece = ((side * Self::PIECES as f64) as usize).min(Self::PIECES - 1);
         let [from, to] = [places[piece], places[piece + 1]];
         if x >= 1.0 {
-            return ProfilePlace { x, factor: 0.0, sum: to.sum };
+            return DVec3::new(x, 0.0, to.z);
         }
-        let slope = (to.factor - from.factor) / (to.x - from.x);
         let step = x - from.x;
-        let factor = from.factor + slope * step;
-        ProfilePlace { x, factor, sum: from.sum + 0.5 * (from.factor + factor) * step }
+        let factor = from.y + (to.y - from.y) / (to.x - from.x) * step;
+        DVec3::new(x, factor, from.z + 0.5 * (from.y + factor) * step)
     }
 
     /// Cosines that divide the profile so that the means between them differ least from it, in the sum of
@@ -299,7 +288,7 @@ mod tests {
         let places = batwing.places();
         for degrees in 0..90 {
             let cosine = f64::from(degrees).to_radians().cos();
-            let found = batwing.place(&places, cosine).factor;
+            let found = batwing.place(&places, cosine).y;
             // The kink of the peak is cut off by what the factor changes within half of a piece, .7 degrees
             assert!((found - batwing.factor(cosine)).abs() < 1.5e-2, "{degrees}: {found}");
         }

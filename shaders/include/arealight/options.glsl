@@ -100,6 +100,11 @@
 #define AREALIGHT_TEXTURED_DISKS 1
 #endif
 
+// Some light is seen through an opening (with AREALIGHT_SHAPED): those whose record says so.
+#ifndef AREALIGHT_OPENINGS
+#define AREALIGHT_OPENINGS 0
+#endif
+
 // How images are looked up, one of AREALIGHT_FOOTPRINT_* (arealight::Footprint).
 #ifndef AREALIGHT_FOOTPRINT
 #define AREALIGHT_FOOTPRINT 0
@@ -159,6 +164,7 @@ const bool AREALIGHT_HAS_THIN_FILM = bool(AREALIGHT_THIN_FILM);
 const bool AREALIGHT_HAS_TWO_SIDED = bool(AREALIGHT_TWO_SIDED);
 const bool AREALIGHT_HAS_TEXTURED_POLYGONS = bool(AREALIGHT_TEXTURED_POLYGONS);
 const bool AREALIGHT_HAS_TEXTURED_DISKS = bool(AREALIGHT_TEXTURED_DISKS);
+const bool AREALIGHT_HAS_OPENINGS = bool(AREALIGHT_OPENINGS);
 const bool AREALIGHT_CLIPS_AT_SURFACE = bool(AREALIGHT_SURFACE_HORIZON);
 const bool AREALIGHT_USES_FORMULA = bool(AREALIGHT_FORMULA);
 // Not by formulas, which make one. A choice, no logical operators: compilers would make branches of those.

@@ -100,6 +100,8 @@ fn flags_have_the_same_bits_in_glsl() {
         ("MESH", GpuLight::MESH.into()),
         ("QUAD", GpuLight::QUAD.into()),
         ("PROFILE", GpuLight::PROFILE.into()),
+        ("OPENING", GpuLight::OPENING.into()),
+        ("SHAPED", GpuLight::SHAPED.into()),
     ];
     assert_constants(LIGHT_RECORDS_GLSL, "LIGHT_", &flags);
     assert_constants(LIGHT_RECORDS_GLSL, "NO_LIGHT_", &[("TEXTURE", GpuLight::NO_TEXTURE.into())]);

@@ -210,7 +210,7 @@ fn each_set_of_lights_has_a_module_of_its_own() {
     let kinds = [
         (Effects::TEXTURED, "arealight_bridge_light_texture("),
         (Effects::POLYGON | Effects::MESH, "struct-ArealightMeshLight"),
-        (Effects::PROFILE, "struct-ArealightShapedLight"),
+        (Effects::SHAPED, "struct-ArealightShapedLight"),
         (Effects::ELLIPSE, "struct-ArealightDiskLight"),
         (Effects::SPHERE, "struct-ArealightSphereLight"),
         (Effects::TUBE, "struct-ArealightTubeLight"),

@@ -1,7 +1,7 @@
 //! Lights with a profile on the GPU: known radiance, the float64 twin, and where they are hard.
 
-use arealight::Profile;
 use arealight::plan::{ShadowFilter, ShadowHistory};
+use arealight::{Opening, Profile};
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{SupportedCase, read_cases};
 use arealight_engine::Reference;
@@ -147,8 +147,100 @@ fn rings_follow_their_float64_twin() {
     }
 }
 
+/// Lights as of [`points`], each seen through an opening: between the point and the light, of every size;
+/// behind the point; the size of the light from the point to rounding; and with sides through its corners.
+fn opened_points(seed: u64, surface: &Surface, count: usize, has_profiles: bool) -> Vec<EvalPoint> {
+    let mut random = Random::new(seed);
+    let mut points = points(seed, surface, count);
+    points.iter_mut().enumerate().for_each(|(index, given)| {
+        let light = &mut given.light;
+        light.profile = light.profile.take().filter(|_| has_profiles);
+        if !has_profiles && index.is_multiple_of(5) {
+            // Concave ones
+            let (center, size) = (random.direction(), random.between(0.1, 1.0));
+            light.shape = LightShape::Polygon(random.polygon(center, 4 + index % 5, 0.3 * size, size));
+        }
+        let vertices = light.shape.vertices().to_vec();
+        let center = light.shape.center();
+        let normal = (center.normalize() + 0.5 * random.direction()).normalize();
+        let height = vertices.iter().map(|vertex| vertex.dot(normal)).fold(f64::INFINITY, f64::min);
+        let part = if index % 11 == 7 { -0.4 } else { random.between(0.05, 0.99) };
+        // Onto the plane, as seen from the point
+        let seen = |to: DVec3| to * (height * part / to.dot(normal));
+        let (u, v) = normal.any_orthonormal_pair();
+        let housed = index.is_multiple_of(2);
+        let opening = if height <= 0.0 {
+            Opening { center: center - 2.0 * center.length() * normal, axis_u: u, axis_v: v, housed: false }
+        } else if index % 7 == 3 {
+            // What covers the light exactly, or a part of it with a corner on its edge
+            let (a, b, c) = (vertices[0] * part.abs(), vertices[1] * part.abs(), vertices[2] * part.abs());
+            let (u, v) = (0.5 * (b - a), 0.5 * (c - b));
+            Opening { center: a + u + v, axis_u: u, axis_v: v, housed }
+        } else {
+            let [a, b, size] =
+                [random.between(0.2, 1.5), random.between(0.2, 1.5), random.between(0.02, 1.0)];
+            let aim = seen(vertices[index % vertices.len()].lerp(center, random.between(0.0, 1.0)));
+            let size = size * height * part.abs();
+            Opening { center: aim, axis_u: size * a * u, axis_v: size * (b * v + 0.3 * u), housed }
+        };
+        light.opening = Some(opening);
+    });
+    points.retain(|given| given.light.validate().is_ok());
+    assert!(points.len() > count * 9 / 10, "{} of {count} are lights", points.len());
+    points
+}
+
 #[test]
-fn a_spot_and_its_shadows_are_those_of_monte_carlo() {
+fn openings_clip_as_their_float64_twin() {
+    let Some(engine) = TestEngine::new() else { return };
+    for (surface, has_profiles, bound) in [
+        // The promise for any outline
+        (lambert_surface(), false, 1e-6),
+        (glossy_surface(0.2), false, 1e-6),
+        // The chords of rims, as without an opening
+        (lambert_surface(), true, 2e-3),
+        (glossy_surface(0.2), true, 1.5e-2),
+    ] {
+        for quality in [Quality::default(), Quality { horizon: Horizon::Both, ..Quality::default() }] {
+            let points = opened_points(3, &surface, 1200, has_profiles);
+            let answers = engine.eval(&points, quality).unwrap();
+            let mut comparison = Comparison::new(format!("{quality:?}, {}, {has_profiles}", surface.alpha));
+            let (mut hidden, mut dimmer) = (0, 0);
+            for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
+                let expected = twin(quality, given);
+                comparison.add_color(*answer, expected, bound, || format!("point {index}: {given:?}"));
+                let open = Light { opening: None, ..given.light.clone() };
+                let all = twin(quality, &EvalPoint { light: open, ..given.clone() });
+                hidden += usize::from(all.x > 0.01 && expected.x == 0.0);
+                dimmer += usize::from(expected.x > 0.0 && expected.x < all.x - 2.0 * bound);
+            }
+            println!("{}, {hidden} hidden, {dimmer} dimmer: {:e}", surface.alpha, comparison.largest());
+            // The twin: without the openings these would differ
+            assert!(hidden > 20 && dimmer > 100, "{hidden} {dimmer}");
+            comparison.assert_all();
+        }
+    }
+}
+
+#[test]
+fn truth_has_openings() {
+    let points = opened_points(5, &lambert_surface(), 40, false);
+    for given in &points {
+        let light = RelativeLight::new(&given.light, given.position);
+        let truth = arealight_oracle::shading::truth(
+            &given.surface,
+            given.normal,
+            given.view,
+            &light,
+            &arealight_oracle::cubature::Settings::default(),
+        );
+        let exact = twin(Quality::default(), given);
+        assert!((truth.radiance - exact).abs().max_element() < 1e-6, "{} {exact}", truth.radiance);
+    }
+}
+
+#[test]
+fn a_spot_behind_doors_and_its_shadows_are_those_of_monte_carlo() {
     const SIZE: [u32; 2] = [16, 16];
     let Some(engine) = TestEngine::new() else { return };
     // A floor under a lamp, seen from below a plate between them
@@ -162,13 +254,18 @@ fn a_spot_and_its_shadows_are_those_of_monte_carlo() {
     let camera = Camera { position: DVec3::Y * 0.7, half_height: 2.0, ..look };
     let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
     let corners = [(-0.3, -0.3), (0.3, -0.3), (0.3, 0.3), (-0.3, 0.3)].map(|(x, z)| corner(x, 1.6, z));
+    let shape = LightShape::Polygon(corners.to_vec());
+    // Doors that cut half of the cone away
+    let doors = Opening::doors(&shape, 0.3, 0.1).unwrap();
     let spot = Light {
-        shape: LightShape::Polygon(corners.to_vec()),
+        opening: Some(Opening { axis_u: 0.5 * doors.axis_u, ..doors }),
+        shape,
         radiance: Vec3::splat(5.0),
         profile: Some(Profile::cone(0.2, 0.5, 6).unwrap()),
         ..Light::default()
     };
     let wide = Light { profile: None, ..spot.clone() };
+    let open = Light { opening: None, ..spot.clone() };
     let options = ShadeOptions { surfaces: Effects::DIFFUSE, shadow_rays: 4, ..ShadeOptions::default() };
     // The mean of each pixel over what is added
     let seen = |lamp: &Light, rounds: u32, shade: &dyn Fn(&mut SceneRenderer<'_>)| {
@@ -179,7 +276,7 @@ fn a_spot_and_its_shadows_are_those_of_monte_carlo() {
         radiance.iter().map(|pixel| f64::from(pixel.x) / f64::from(rounds)).collect::<Vec<f64>>()
     };
     let [plain, shadowed] = [false, true].map(|shadows| {
-        let reference = Reference { samples: 1024, seed: 1, shadows, coupled: false };
+        let reference = Reference { samples: 4096, seed: 1, shadows, coupled: false };
         seen(&spot, 1, &|renderer| {
             renderer.reference(reference, |_| {}).unwrap();
         })
@@ -197,12 +294,14 @@ fn a_spot_and_its_shadows_are_those_of_monte_carlo() {
     });
     let mean = |picture: &[f64]| picture.iter().sum::<f64>() / picture.len() as f64;
     for (what, found, expected, bound) in [
-        // 1024 samples of a factor from 0 to 1 leave .02 of a pixel's light, twice that of the mean's
+        // 4096 samples, half of them hidden, of a factor from 0 to 1 leave .015 of a pixel's light, three times
+        // that of the mean's
         ("by cosines", by_cosines(&spot), &plain, 0.06),
         // And 256 rays .03 in the penumbra, which is most of it
         ("by rays", by_rays, &shadowed, 0.1),
-        // The twins, which are not met: without the cone, and without the plate
+        // The twins, which are not met: without the cone, the doors, or the plate
         ("without the cone", by_cosines(&wide), &plain, -0.3),
+        ("without the doors", by_cosines(&open), &plain, -0.3),
         ("without the plate", plain.clone(), &shadowed, -0.2),
     ] {
         let (ratio, off) = (mean(&found) / mean(expected), error(&found, expected, expected));

@@ -1,7 +1,7 @@
 //! Shading by tiles: the picture without, whatever the lights; lists, classes and their bounds.
 
-use arealight::TileClass;
 use arealight::kernels::{CLASSIFY, SHADE};
+use arealight::{Opening, Profile, TileClass};
 use arealight_engine::TileCounts;
 use arealight_tests::frame::{black, reflected, reflected_by_tiles, scene};
 use arealight_tests::prelude::*;
@@ -212,6 +212,27 @@ fn images_of_disks_are_looked_up_by_tiles_too() {
     assert_eq!(found.plain, found.tiled);
     // The twin: with another image they differ
     assert_ne!(shade(1).tiled, found.plain);
+}
+
+#[test]
+fn tiles_leave_out_lights_that_openings_hide() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = scene("sweep.glb");
+    let center = scene.bounds.center().with_y(scene.bounds.min.y);
+    let mut lights = lamps(20, center);
+    let shade = |lights: &[Light]| pictures(&engine, &scene, lights, Effects::DIFFUSE, every_frame());
+    let open = shade(&lights);
+    for (index, lamp) in lights.iter_mut().enumerate() {
+        let doors = Opening::doors(&lamp.shape, 0.1, 0.3).unwrap();
+        lamp.opening = Some(Opening { housed: index % 3 > 0, ..doors });
+        lamp.profile = (index % 2 == 0).then(|| Profile::cone(0.5, 1.2, 4).unwrap());
+    }
+    let found = shade(&lights);
+    assert_eq!(found.different(&lights), 0, "{:?}", found.counts);
+    let lit = found.plain.iter().filter(|pixel| pixel.x > 1e-4).count();
+    assert!(lit > 100, "{lit} pixels are lit");
+    // The twin: without them most tiles have more
+    assert!(2 * found.counts.lights < open.counts.lights, "{:?} {:?}", found.counts, open.counts);
 }
 
 /// Where lamps are over the floor of the sweep, in rows of ten, and how bright: some are bright and most dim.

@@ -9,7 +9,7 @@ mod fields;
 mod material;
 mod strict;
 
-use arealight::{Light, LightFault, LightShape, LightTexture, Profile, TextureMap, TubeEnds};
+use arealight::{Light, LightFault, LightShape, LightTexture, Opening, Profile, TextureMap, TubeEnds};
 use arealight_oracle::material::Surface;
 use arealight_oracle::shading::{RelativeLight, ShownImage};
 use arealight_oracle::texture::Texture;
@@ -83,6 +83,8 @@ pub struct CaseLight {
     pub two_sided: bool,
     /// How the radiance changes with the angle from the front.
     pub profile: Option<Profile>,
+    /// What it is seen through.
+    pub opening: Option<Opening>,
     /// What shines.
     pub shape: CaseShape,
 }
@@ -280,7 +282,19 @@ fn read_light(fields: &Fields) -> Result<CaseLight, CaseError> {
             return Err(fields.error("type", &message));
         }
     };
-    Ok(CaseLight { radiance, two_sided, profile: read_profile(fields)?, shape })
+    let opening = fields.has("opening").then(|| read_opening(fields)).transpose()?;
+    Ok(CaseLight { radiance, two_sided, profile: read_profile(fields)?, opening, shape })
+}
+
+fn read_opening(light: &Fields) -> Result<Opening, CaseError> {
+    let fields = light.object("opening")?;
+    let opening = Opening {
+        center: fields.vector("center")?,
+        axis_u: fields.direction("axis_u")?,
+        axis_v: fields.direction("axis_v")?,
+        housed: fields.optional("housed", Fields::boolean)?.unwrap_or(false),
+    };
+    fields.unread().first().map_or(Ok(opening), |unknown| Err(light.error("opening", unknown)))
 }
 
 /// Levels of a profile where a case says nothing of them.
@@ -357,6 +371,7 @@ impl Case {
             two_sided: self.light.two_sided,
             image: None,
             profile: self.light.profile.clone(),
+            opening: self.light.opening.map(|it| Opening { center: it.center - self.position, ..it }),
         };
         if let Some(texture) = texture {
             let image = match load(&texture.path) {
@@ -462,6 +477,7 @@ impl Case {
             two_sided: self.light.two_sided,
             texture: shown.map(|(_, uvs)| LightTexture { layer: 0, uvs }),
             profile: self.light.profile.clone(),
+            opening: self.light.opening,
             shape,
         };
         light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;

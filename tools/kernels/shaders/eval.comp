@@ -24,7 +24,7 @@ layout(constant_id = 7) const int FOOTPRINT = 0;
 
 
 vec3 radiance_of(ArealightPoint point, ArealightGpuLight record) {
-    if (HAS_PROFILES && (record.flags & LIGHT_PROFILE) != 0u) {
+    if (HAS_SHAPED && (record.flags & LIGHT_SHAPED) != 0u) {
         return arealight_radiance(point, load_shaped(record));
     }
     if ((EFFECTS & EFFECT_MESH) != 0u && (record.flags & LIGHT_MESH) != 0u) {

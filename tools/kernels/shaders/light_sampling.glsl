@@ -64,8 +64,9 @@ vec3 light_radiance(uint index, ArealightPolygonLight light, LightPoint point, v
     if (light.image.layer != AREALIGHT_NO_IMAGE) {
         radiance *= arealight_image_color(light.image, point.offset);
     }
-    if ((lights[index].flags & LIGHT_PROFILE) != 0u) {
-        radiance *= arealight_profile_factor(lights[index].profile, point.normal, offset);
+    if ((lights[index].flags & LIGHT_SHAPED) != 0u) {
+        vec3 position = lights[index].center + point.offset - offset;
+        radiance *= shaping_factor(lights[index], point.normal, position, offset);
     }
     return radiance;
 }

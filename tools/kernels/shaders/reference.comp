@@ -28,6 +28,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define AREALIGHT_LIGHT_TEXTURES 1
 #define AREALIGHT_POLYGONS 1
 #define AREALIGHT_MESHES 1
+#define AREALIGHT_OPENINGS 1
 #define AREALIGHT_DISKS 1
 #define AREALIGHT_SPHERES 1
 #define AREALIGHT_TUBES 1
@@ -39,7 +40,6 @@ layout(constant_id = 100) const uint SHADOWS = 0u;
 layout(constant_id = 101) const uint COUPLED = 0u;
 
 #include "arealight/ggx.glsl"
-#include "arealight/lights/profile.glsl"
 #include "arealight/thin_film.glsl"
 #include "arealight/shadows/ray_origin.glsl"
 #include "polygon_lights.glsl"

@@ -6,6 +6,7 @@ use crate::extensions::AREA_LIGHTS;
 use crate::messages::Messages;
 use crate::node_lights;
 use crate::nodes::PlacedNode;
+use crate::openings;
 use arealight::{Light, LightShape, Profile};
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
@@ -89,13 +90,14 @@ pub(crate) fn lights(
             let text = format!("{field} is no field of {AREA_LIGHTS}: left out");
             messages.warn(format!("light '{name}'"), text);
         }
+        let extras = &light.extras["arealight"];
         let made = shape.and_then(|shape| {
             let profile = profile(light)?;
             let light = Light { name: name.clone(), radiance, shape, profile, ..Light::default() };
-            light.validate().map(|()| light).map_err(|fault| fault.to_string())
+            openings::behind(light, extras, node)
         });
         match made {
-            Ok(light) => lights.push(light),
+            Ok(behind) => lights.extend(behind),
             Err(problem) => messages.warn(format!("light '{name}'"), format!("{problem}: left out")),
         }
     }

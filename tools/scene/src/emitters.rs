@@ -5,12 +5,14 @@ use crate::materials::Materials;
 use crate::meshes::Instance;
 use crate::messages::Messages;
 use crate::nodes::PlacedNode;
+use crate::openings;
 use crate::outlines::{Coordinates, outlines};
 use crate::scene::{SceneLamp, SceneMaterial, Triangle};
 use crate::shape_lights;
 use crate::shown::{self, TexturedLight};
 use arealight::{Light, LightShape};
 use glam::Vec3;
+use serde_json::Value;
 use std::ops::Range;
 
 /// The lights that meshes are.
@@ -27,6 +29,7 @@ pub(crate) struct Emitters {
 
 /// What an instance's lights are made of.
 struct Source<'a> {
+    node: &'a PlacedNode,
     instance: &'a Instance<'a>,
     material: &'a SceneMaterial,
     materials: &'a Materials,
@@ -48,22 +51,16 @@ impl Emitters {
         for (instance, closed) in mesh.iter().zip(&closed) {
             let material = &materials.list[instance.material as usize];
             let place = format!("light '{}' (node {})", instance.name, node.index);
-            let source = Source { instance, material, materials, place };
-            let lights = self.add_instance(node, &source, closed, messages);
+            let source = Source { node, instance, material, materials, place };
+            let lights = self.add_instance(&source, closed, messages);
             self.lamps.push(SceneLamp { triangles: instance.drawn.clone(), lights });
         }
     }
 
     /// Adds the lights that an instance is, if its material emits: which of the lights.
-    fn add_instance(
-        &mut self,
-        node: &PlacedNode,
-        source: &Source,
-        is_closed: &[bool],
-        messages: &mut Messages,
-    ) -> Range<usize> {
+    fn add_instance(&mut self, source: &Source, is_closed: &[bool], messages: &mut Messages) -> Range<usize> {
         let first = self.lights.len();
-        let &Source { instance, material, materials, .. } = source;
+        let &Source { node, instance, material, materials, .. } = source;
         let radiance = material.emission;
         if radiance == Vec3::ZERO || instance.triangles.is_empty() {
             return first..first;
@@ -145,7 +142,7 @@ impl Emitters {
                 polygons => polygons.iter().for_each(|outline| shape.add_face(outline)),
             }
             let name = instance.name.clone();
-            self.push(place, Light { name, radiance, two_sided, shape, ..Light::default() }, messages);
+            self.push(source, Light { name, radiance, two_sided, shape, ..Light::default() }, messages);
             return;
         };
         // An image lies on one plane: each straight part is a light of its own
@@ -172,21 +169,24 @@ impl Emitters {
                 if count == 1 { instance.name.clone() } else { format!("{}#{}", instance.name, number + 1) };
             let shape = LightShape::Polygon(vertices);
             let light = Light { name, radiance, two_sided, shape, ..Light::default() };
-            if self.push(place, light, messages) {
+            if self.push(source, light, messages) {
                 let owner = self.lights.len() - 1;
                 self.textured.push(TexturedLight { owner, surface, texture, uvs });
             }
         }
     }
 
-    /// Adds a light; false where it cannot be shaded.
-    fn push(&mut self, place: &str, light: Light, messages: &mut Messages) -> bool {
-        let fault = light.validate().err();
-        match &fault {
-            None => self.lights.push(light),
-            Some(fault) => messages.warn(place, format!("{fault}: left out")),
+    /// Adds a light as it is seen; false where it cannot be shaded.
+    fn push(&mut self, source: &Source, light: Light, messages: &mut Messages) -> bool {
+        let said = source.node.shape.as_ref().unwrap_or(&Value::Null);
+        match openings::behind(light, said, source.node) {
+            Ok(lights) => self.lights.extend(lights),
+            Err(problem) => {
+                messages.warn(source.place.as_str(), format!("{problem}: left out"));
+                return false;
+            }
         }
-        fault.is_none()
+        true
     }
 
     /// Drops the lights that are black, and says marks the triangles that look like the others.

@@ -58,6 +58,7 @@ mod messages;
 mod node_lights;
 mod nodes;
 mod numbers;
+mod openings;
 mod outlines;
 mod primitives;
 mod punctual;

@@ -9,6 +9,7 @@ use crate::extensions::PUNCTUAL_LIGHTS;
 use crate::messages::Messages;
 use crate::node_lights;
 use crate::nodes::PlacedNode;
+use crate::openings;
 use arealight::{Light, LightShape, Profile};
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
@@ -83,14 +84,14 @@ pub(crate) fn lights(
         };
         let name = node_lights::name(node, light.name.as_ref(), "punctual light", place);
         match make(light, node, radius, bounds, &name, messages) {
-            Ok(light) => lights.push(light),
+            Ok(behind) => lights.extend(behind),
             Err(problem) => messages.warn(format!("light '{name}'"), format!("{problem}: left out")),
         }
     }
     Ok(lights)
 }
 
-/// The light of a radius, or why there is none.
+/// The light of a radius, or of a grid its lights, or why there is none.
 fn make(
     light: &PunctualLight,
     node: &PlacedNode,
@@ -98,7 +99,7 @@ fn make(
     bounds: Bounds,
     name: &str,
     messages: &mut Messages,
-) -> Result<Light, String> {
+) -> Result<Vec<Light>, String> {
     if radius <= 0.0 || !radius.is_finite() {
         return Err(format!("a radius of {radius} m"));
     }
@@ -135,8 +136,8 @@ fn make(
         _ => None,
     };
     let profile = profile.transpose().map_err(|fault| fault.to_string())?;
-    let light = Light { name: name.to_owned(), radiance, shape, profile, ..Light::default() };
-    light.validate().map(|()| light).map_err(|fault| fault.to_string())
+    let made = Light { name: name.to_owned(), radiance, shape, profile, ..Light::default() };
+    openings::behind(made, &light.extras["arealight"], node)
 }
 
 /// Where a node's light shines to: along -Z.

@@ -171,6 +171,7 @@ vec3 shade(int first) {
 #endif
     shaped.radiance = radiance;
     shaped.profile = counts.w;
+    shaped.opening = counts.x;
     sum += arealight_radiance(point, shaped);
 #endif
 #if AREALIGHT_DISKS

@@ -39,10 +39,12 @@ pub fn density_truth(
 ) -> Truth {
     let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
     let image = light.image.as_ref().map(|image| image.in_frame(frame));
+    let Some(bounds) = light.bounds() else { return Truth::default() };
     let region = match &image {
         None => Region::polygon(&vertices),
         Some(image) => image.region(&vertices, settings.max_evaluations / super::EVALUATIONS_PER_TEXEL),
     };
+    let region = bounds.iter().fold(region, |region, normal| region.clipped(frame.to_surface(*normal)));
     let estimate = directions.cut(&region).integrate(settings, angles, |to| {
         let shown = image.as_ref().map_or(DVec3::ONE, |image| image.color(to));
         let factor = light.profile.as_ref().map_or(1.0, |profile| factor_in(profile, &vertices, to));

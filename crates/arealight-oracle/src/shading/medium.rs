@@ -38,7 +38,7 @@ pub fn in_scattered(g: f64, view: DVec3, light: &RelativeLight) -> DVec3 {
         let density = |to: DVec3| lobes.density(to.z);
         return density_truth(&frame, light, &Settings::default(), Directions::All, density).radiance;
     }
-    let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
+    let vertices = light.seen(&frame);
     let covered = emitted(solid_angle(&vertices), light.two_sided);
     let form_factor = |space: &DMat3| emitted(transformed_form_factor(space, &vertices), light.two_sided);
     light.radiance * lobes.sum(covered, form_factor)

@@ -1,8 +1,7 @@
 //! A light with a profile: its rings between levels, each with the profile's mean over it.
 
-use crate::polygon::{transformed_form_factor, vector_form_factor};
+use crate::polygon::{clip_by, transformed_form_factor, vector_form_factor};
 use arealight::Profile;
-use arealight::profile::ProfilePlace;
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
@@ -10,8 +9,8 @@ use std::f64::consts::TAU;
 /// sends.
 const CORNERS: u32 = 256;
 
-/// What a transformed cosine gets through a profile, signed. `vertices` are the light's, convex, `visible`
-/// what counts of it, both from the shading point. The float64 twin of `lights/shaped.glsl`, but for its
+/// What a transformed cosine gets through a profile, signed. `vertices` are what is seen of the light, convex,
+/// `visible` what counts of that, both from the shading point. The float64 twin of `lights/shaped.glsl`, but for its
 /// disks, which are finer here.
 pub(super) fn profiled(profile: &Profile, vertices: &[DVec3], visible: &[DVec3], inverse: &DMat3) -> f64 {
     let Some(normal) = normal_of(vertices) else { return 0.0 };
@@ -26,7 +25,7 @@ pub(super) fn profiled(profile: &Profile, vertices: &[DVec3], visible: &[DVec3],
     }
     let (back, determinant) = (inverse.inverse(), inverse.determinant().abs());
     // A ring's mean of the profile, about the mean direction of what the lobe sees of it
-    let mean = |from: ProfilePlace, to: ProfilePlace, vector: DVec3| {
+    let mean = |from: DVec3, to: DVec3, vector: DVec3| {
         let axis = vector.normalize_or_zero();
         let cosine = (1.0 - vector.length()).max(0.0).sqrt();
         let round = cosine + cosine * cosine;
@@ -53,7 +52,7 @@ pub(super) fn profiled(profile: &Profile, vertices: &[DVec3], visible: &[DVec3],
             high = if ends[1] < last { at(ends[1]) } else { to };
         }
         let range = high.x - low.x;
-        if range > 1e-3 { (high.sum - low.sum) / range } else { 0.5 * (low.factor + high.factor) }
+        if range > 1e-3 { (high.z - low.z) / range } else { 0.5 * (low.y + high.y) }
     };
     let factor = |part: &[DVec3]| transformed_form_factor(inverse, part);
     let vector = |part: &[DVec3]| {
@@ -99,7 +98,8 @@ fn range(vertices: &[DVec3], normal: DVec3, foot: DVec3) -> (f64, f64) {
         let part = (-a.dot(along) / along.length_squared().max(1e-300)).clamp(0.0, 1.0);
         nearest = nearest.min((a + along * part).length_squared());
         farthest = farthest.max(b.length_squared());
-        is_within &= normal.dot(a.cross(b)) >= 0.0;
+        // Where an outline was cut twice at one place, the way between is rounding
+        is_within &= normal.dot(a.cross(b)) >= -1e-12 * a.length() * b.length();
     }
     (if is_within { 0.0 } else { nearest }, farthest)
 }
@@ -114,20 +114,7 @@ fn in_disk(outline: &[DVec3], normal: DVec3, center: DVec3, square: f64) -> Vec<
     for corner in 0..CORNERS {
         let (sin, cos) = (f64::from(corner) * step).sin_cos();
         let out = u * cos + v * sin;
-        let height = |point: DVec3| side - out.dot(point - center);
-        if left.iter().all(|point| height(*point) >= 0.0) {
-            continue;
-        }
-        let whole = std::mem::take(&mut left);
-        for (a, b) in whole.iter().zip(whole.iter().cycle().skip(1)) {
-            let (over, next) = (height(*a), height(*b));
-            if over >= 0.0 {
-                left.push(*a);
-            }
-            if (over >= 0.0) != (next >= 0.0) {
-                left.push(a.lerp(*b, over / (over - next)));
-            }
-        }
+        left = clip_by(left, |point| side - out.dot(point - center));
     }
     left
 }

@@ -270,6 +270,6 @@ pub fn textured_ellipse(light: &Light, texture: Arc<Texture>) -> Option<Relative
         radiance: light.radiance.as_dvec3(),
         two_sided: light.two_sided,
         image: Some(ShownImage { texture, map }),
-        profile: None,
+        ..RelativeLight::default()
     })
 }

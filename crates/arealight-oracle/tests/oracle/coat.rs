@@ -61,8 +61,7 @@ fn a_coat_of_no_weight_is_none_to_the_bit() {
         vertices: vec![DVec3::new(-0.5, -1.0, 1.0), DVec3::new(0.0, 1.0, 1.0), DVec3::new(1.0, 0.0, 0.5)],
         radiance: DVec3::new(1.0, 2.0, 3.0),
         two_sided: true,
-        image: None,
-        profile: None,
+        ..RelativeLight::default()
     };
     for (coat, view) in hard_coats() {
         let surface = coated(Coat { weight: 0.0, ..coat });

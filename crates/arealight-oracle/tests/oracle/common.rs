@@ -93,8 +93,7 @@ pub fn from_everywhere(answer: impl FnMut(&RelativeLight) -> DVec3) -> DVec3 {
         vertices: face.to_vec(),
         radiance: DVec3::ONE,
         two_sided: false,
-        image: None,
-        profile: None,
+        ..RelativeLight::default()
     };
     let lights: Vec<RelativeLight> = faces.map(light).collect();
     lights.iter().map(answer).sum()

@@ -20,7 +20,7 @@ fn below(f0: f64, f90: f64) -> Surface {
 }
 
 fn light(vertices: Vec<DVec3>) -> RelativeLight {
-    RelativeLight { vertices, radiance: DVec3::ONE, two_sided: true, image: None, profile: None }
+    RelativeLight { vertices, radiance: DVec3::ONE, two_sided: true, ..RelativeLight::default() }
 }
 
 /// What a surface reflects of light from everywhere: the fitted lobes, and the truth.

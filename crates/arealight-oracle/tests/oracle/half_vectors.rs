@@ -56,7 +56,7 @@ fn lamps(seed: u64, surface: impl Fn(&mut dyn FnMut(f64, f64) -> f64) -> Surface
             let (u, v) = (frame * u * draw(0.05, 0.35), frame * v * draw(0.05, 0.35));
             let vertices = [u + v, v - u, -u - v, u - v].map(|corner| middle + corner).to_vec();
             let light =
-                RelativeLight { vertices, radiance: DVec3::ONE, two_sided: true, image: None, profile: None };
+                RelativeLight { vertices, radiance: DVec3::ONE, two_sided: true, ..RelativeLight::default() };
             Shown { surface, view, light }
         })
         .collect()
@@ -119,8 +119,7 @@ fn light_from_everywhere_has_the_lobe_s_albedo() {
                 vertices,
                 radiance: DVec3::ONE,
                 two_sided: false,
-                image: None,
-                profile: None,
+                ..RelativeLight::default()
             };
             let sample = TABLE.lookup(alpha.sqrt(), view.z);
             let albedo = surface.f0 * sample.albedo + (DVec3::ONE - surface.f0) * sample.schlick;
@@ -151,7 +150,7 @@ fn a_mirror_shows_a_lamp_as_far_as_it_is_there() {
     let rectangle = |middle: DVec3| {
         let (u, v) = mirror.any_orthonormal_pair();
         let vertices = [u + v, v - u, -u - v, u - v].map(|corner| middle + 0.1 * corner).to_vec();
-        RelativeLight { vertices, radiance: DVec3::ONE, two_sided: true, image: None, profile: None }
+        RelativeLight { vertices, radiance: DVec3::ONE, two_sided: true, ..RelativeLight::default() }
     };
     let sent = |middle| {
         ltc_on(on(SpecularLobes::HalfVectors), &TABLE, &metal(1e-3), DVec3::Z, view, &rectangle(middle)).x

@@ -68,8 +68,7 @@ fn errors(f0: f64, random: &mut Stream) -> [f64; 2] {
                 vertices: corners.to_vec(),
                 radiance: DVec3::ONE,
                 two_sided: true,
-                image: None,
-                profile: None,
+                ..RelativeLight::default()
             };
             let shade =
                 |surface: &Surface| ltc_on(Quality::default(), &TABLE, surface, DVec3::Z, view, &light).x;

@@ -27,7 +27,7 @@ fn diffuse() -> Surface {
 }
 
 fn light(vertices: Vec<DVec3>, two_sided: bool) -> RelativeLight {
-    RelativeLight { vertices, radiance: DVec3::new(1.0, 2.0, 4.0), two_sided, image: None, profile: None }
+    RelativeLight { vertices, radiance: DVec3::new(1.0, 2.0, 4.0), two_sided, ..RelativeLight::default() }
 }
 
 /// A table whose lobes and magnitudes differ from node to node.

@@ -65,7 +65,7 @@ fn cases(is_metal: bool, count: usize, degrees: [f64; 2]) -> Vec<Case> {
             let corner = |x: f64, y: f64| center + (right * x + up * y) * size;
             let vertices = vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
             let light =
-                RelativeLight { vertices, radiance: DVec3::ONE, two_sided: true, image: None, profile: None };
+                RelativeLight { vertices, radiance: DVec3::ONE, two_sided: true, ..RelativeLight::default() };
             Case { surface, view, light }
         })
         .collect()

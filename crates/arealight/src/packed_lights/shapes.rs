@@ -9,7 +9,7 @@ impl Light {
     /// A disk, sphere or tube as the GPU reads it, relative to `origin`: the subtraction is made in float64.
     pub(crate) fn pack_shape(&self, origin: DVec3) -> Result<GpuShape, LightFault> {
         self.check_radiance()?;
-        if self.profile.is_some() {
+        if self.is_shaped() {
             return Err(LightFault::ProfileNotFlat);
         }
         let texture_layer = self.disk_texture()?;

@@ -3,20 +3,21 @@
 
 #include "arealight/form_factor/disk_part.glsl"
 #include "arealight/form_factor/sphere.glsl"
+#include "arealight/lights/opening.glsl"
 #include "arealight/lights/polygon.glsl"
-#include "arealight/lights/profile.glsl"
 
-// Flat, convex lights with a profile: a factor of the radiance by the angle from the front's normal
-// (arealight::Profile in Rust; docs/shaped-light.md).
+// Flat lights with a profile, a factor of the radiance by the angle from the front's normal
+// (arealight::Profile in Rust), behind an opening (lights/opening.glsl), or both: docs/shaped-light.md.
 //
 // The angle at the light is that of the foot of the perpendicular, seen from the shading point: points of the
 // light within an angle are a disk about the foot. So the light is cut into rings by a few levels, and of
 // each ring the form factor counts times the profile's mean over it, or over what the light has of it.
-//
+// What an opening hides of a ring is clipped away, vertex by vertex.
 struct ArealightShapedLight {
-    ArealightPolygonLight polygon; // convex
+    ArealightPolygonLight polygon; // convex, if it has a profile
     vec3 radiance;                 // the polygon's: of the front at a factor of 1, W/(m^2 sr)
-    uint profile;                  // the first row, for arealight_bridge_profile
+    uint profile;                  // the first row, for arealight_bridge_profile, or AREALIGHT_NO_ROW
+    uint opening;                  // likewise (with AREALIGHT_OPENINGS)
 };
 
 struct ArealightLocalShaped {
@@ -24,14 +25,16 @@ struct ArealightLocalShaped {
     vec3 normal;     // of the front, in the shading frame
     vec3 foot;       // of the perpendicular, from the shading point
     float height;    // squared: of the point over the light's plane
-    float nearest;   // squared: from the foot to the light, 0 within it
+    float nearest;   // squared: from the foot to what is seen of the light, 0 within it
     float farthest;
+    bool holds_foot; // whether the foot is within the light
     vec3 low;        // x, factor and sum of its nearest point
     vec3 high;       // and of its farthest
     uint profile;    // the first row
     float scale;
     uint levels;     // rows of levels
     uint levels_end;
+    ArealightLocalOpening opening;
 };
 
 // A vertex of the light from the foot, in the shading frame.
@@ -39,29 +42,74 @@ vec3 arealight_from_foot(ArealightLocalShaped local, uint index) {
     return local.polygon.center - local.foot + local.polygon.to_frame * arealight_bridge_vertex(index);
 }
 
+// Takes an edge of what is seen, from the foot, into the range of distances.
+void arealight_range_edge(inout ArealightLocalShaped local, vec3 a, vec3 b) {
+    vec3 along = b - a;
+    float part = clamp(-dot(a, along) / max(dot(along, along), AREALIGHT_LEAST_SQUARE), 0.0, 1.0);
+    vec3 nearest = a + part * along;
+    local.nearest = min(local.nearest, dot(nearest, nearest));
+    local.farthest = max(local.farthest, dot(b, b));
+}
+
+// How near and far from the foot what is seen of the light is; false if nothing is.
+bool arealight_find_range(inout ArealightLocalShaped local, float height) {
+    bool is_clipped = AREALIGHT_HAS_OPENINGS && local.opening.is_between;
+    uint count = local.polygon.end - local.polygon.first;
+    ArealightOpeningWalk walk = arealight_opening_walk();
+    local.nearest = 3e38;
+    local.farthest = 0.0;
+    local.holds_foot = true;
+    bool begun = !is_clipped;
+    vec3 before = arealight_from_foot(local, local.polygon.end - 1u);
+    vec3 a = before;
+    vec3 first = before;
+    for (uint step = 0u; step < count + uint(is_clipped); step++) {
+        bool closes = step == count;
+        vec3 vertex = arealight_from_foot(local, local.polygon.first + (closes ? 0u : step));
+        local.holds_foot = local.holds_foot && dot(local.normal, cross(before, vertex)) >= 0.0;
+        before = vertex;
+        ArealightOpeningPart seen = arealight_opening_all(vertex);
+        if (is_clipped) {
+            seen = arealight_opening_step(walk, local.opening, local.foot + vertex, closes);
+        }
+        int vertices = arealight_opening_count(seen);
+        for (int index = 0; index < vertices; index++) {
+            vec3 b = arealight_opening_vertex(local.opening, seen, index);
+            b = is_clipped ? b * (height / dot(local.normal, b)) - local.foot : b;
+            if (begun) {
+                arealight_range_edge(local, a, b);
+            } else {
+                first = b;
+                begun = true;
+            }
+            a = b;
+        }
+    }
+    bool sees_foot = local.holds_foot;
+    if (is_clipped && begun) {
+        arealight_range_edge(local, a, first);
+        sees_foot = sees_foot && arealight_is_in_opening(arealight_opening_place(local.opening, local.foot));
+    }
+    local.nearest = sees_foot ? 0.0 : local.nearest;
+    return begun;
+}
+
 bool arealight_to_local(ArealightPoint point, ArealightShapedLight light, out ArealightLocalShaped local) {
     bool lit = arealight_to_local(point, light.polygon, local.polygon);
+    local.opening.is_between = false;
+    if (AREALIGHT_HAS_OPENINGS && light.opening != AREALIGHT_NO_ROW) {
+        lit = arealight_to_local(point.to_frame, point.position, light.opening, local.opening) && lit;
+    }
     local.normal = point.to_frame * light.polygon.normal;
     float height = dot(local.normal, local.polygon.center);
     local.foot = height * local.normal;
     local.height = height * height;
-    local.nearest = 3e38;
-    local.farthest = 0.0;
-    bool within = true;
-    vec3 a = arealight_from_foot(local, local.polygon.end - 1u);
-    for (uint index = local.polygon.first; index < local.polygon.end; index++) {
-        vec3 b = arealight_from_foot(local, index);
-        vec3 along = b - a;
-        float part = clamp(-dot(a, along) / max(dot(along, along), AREALIGHT_LEAST_SQUARE), 0.0, 1.0);
-        vec3 nearest = a + part * along;
-        local.nearest = min(local.nearest, dot(nearest, nearest));
-        local.farthest = max(local.farthest, dot(b, b));
-        within = within && dot(local.normal, cross(a, b)) >= 0.0;
-        a = b;
-    }
-    local.nearest = within ? 0.0 : local.nearest;
-    vec4 head = arealight_bridge_profile(light.profile);
     local.profile = light.profile;
+    if (AREALIGHT_HAS_OPENINGS && light.profile == AREALIGHT_NO_ROW) {
+        return lit;
+    }
+    lit = arealight_find_range(local, height) && lit;
+    vec4 head = arealight_bridge_profile(light.profile);
     local.scale = head.x;
     local.levels = light.profile + 1u;
     local.levels_end = local.levels + uint(head.y);
@@ -71,27 +119,45 @@ bool arealight_to_local(ArealightPoint point, ArealightShapedLight light, out Ar
     return lit && local.low.x < 1.0;
 }
 
-// An outline whose vertices come in order, and which is clipped as the options have it.
+// The squared radius of a disk that holds any light.
+const float AREALIGHT_NO_RIM = 3e38;
+
+// An outline whose vertices come in order, in the shading frame, and which is clipped as the options have it.
 struct ArealightPartOutline {
     ArealightClippedOutline clipped;
     vec3 first;
+    bool begun;
+    ArealightOpeningWalk walk;
 };
 
-// Goes on to its next vertex, in the shading frame.
-void arealight_part_vertex(inout ArealightPartOutline part, mat3 space, vec3 vertex, bool is_first) {
+void arealight_part_vertex(inout ArealightPartOutline part, mat3 space, vec3 vertex) {
     if (!AREALIGHT_CLIPS_AT_SURFACE) {
         arealight_clipped_add(part.clipped, space, vertex);
-    } else if (is_first) {
-        part.first = vertex;
-        part.clipped = arealight_clipped_begin(vertex);
-    } else {
+    } else if (part.begun) {
         arealight_clipped_vertex(part.clipped, space, vertex);
+    } else {
+        part.first = vertex;
+        part.begun = true;
+        part.clipped = arealight_clipped_begin(vertex);
     }
 }
 
-// The vector form factor, in a space, of what is of the light within a disk about the foot that holds some of
-// it, but not all. Error: that of an outline of as many corners, and of the rim's chords, whose area is the
-// disk's: up to 1e-3 of the disk's.
+// Goes on to its next vertex, as far as it is seen; at last to the first one again, with `closes`.
+void arealight_part_seen(inout ArealightPartOutline part, mat3 space, ArealightLocalOpening opening,
+                         vec3 vertex, bool closes) {
+    ArealightOpeningPart seen = arealight_opening_all(vertex);
+    if (AREALIGHT_HAS_OPENINGS && opening.is_between) {
+        seen = arealight_opening_step(part.walk, opening, vertex, closes);
+    }
+    int count = arealight_opening_count(seen);
+    for (int index = 0; index < count; index++) {
+        arealight_part_vertex(part, space, arealight_opening_vertex(opening, seen, index));
+    }
+}
+
+// The vector form factor, in a space, of what is seen of the light within a disk about the foot that holds
+// some of it; all of it with AREALIGHT_NO_RIM. Error: that of an outline of as many corners, and of the rim's
+// chords, whose area is the disk's: up to 1e-3 of the disk's.
 vec3 arealight_level_vector(mat3 space, ArealightLocalShaped local, float square, float front) {
     uint count = local.polygon.end - local.polygon.first;
     // Begin where the outline comes into the disk; without such an edge all of the disk is in the light
@@ -103,13 +169,16 @@ vec3 arealight_level_vector(mat3 space, ArealightLocalShaped local, float square
         start = dot(a, a) >= square && arealight_edge_in_disk(a, b, square, part) ? index : start;
         a = b;
     }
-    bool is_whole = start == count;
-    if (is_whole && local.nearest > 0.0) {
+    bool has_rim = !AREALIGHT_HAS_OPENINGS || square < AREALIGHT_NO_RIM;
+    bool is_whole = has_rim && start == count;
+    if (is_whole && !local.holds_foot) {
         return vec3(0.0);
     }
-    ArealightPartOutline outline =
-        ArealightPartOutline(arealight_clipped_begin(vec3(0.0)), vec3(0.0));
+    start = has_rim ? start : 0u;
+    ArealightPartOutline outline = ArealightPartOutline(arealight_clipped_begin(vec3(0.0)), vec3(0.0), false,
+                                                        arealight_opening_walk());
     bool is_first = true;
+    vec3 first = vec3(0.0);
     vec3 left = vec3(0.0); // where the outline left the disk
     float outside = 0.0;   // how far it has been since then
     uint last = start == 0u ? count : start;
@@ -134,12 +203,16 @@ vec3 arealight_level_vector(mat3 space, ArealightLocalShaped local, float square
                 arc = arealight_disk_arc(left, from, local.normal, square, outside / square);
             }
             int arcs = arc.chords - 1;
-            int vertices = arcs + (step == count ? 0 : comes ? 2 : 1);
+            bool closes = AREALIGHT_HAS_OPENINGS && step == count && local.opening.is_between;
+            int vertices = arcs + (step == count ? int(closes) : comes ? 2 : 1);
             for (int vertex = 0; vertex < vertices; vertex++) {
                 corner = arealight_disk_arc_turned(arc, local.normal, corner);
                 vec3 place = vertex < arcs ? arc.scale * corner : comes && vertex == arcs ? from : to;
-                arealight_part_vertex(outline, space, local.foot + place, is_first);
+                bool is_end = closes && vertex == arcs;
+                place = is_end ? first : place;
+                first = is_first ? place : first;
                 is_first = false;
+                arealight_part_seen(outline, space, local.opening, local.foot + place, is_end);
             }
             left = to;
             outside = 0.0;
@@ -147,10 +220,19 @@ vec3 arealight_level_vector(mat3 space, ArealightLocalShaped local, float square
         outside = max(outside, dot(b, b) - square);
         a = b;
     }
-    if (AREALIGHT_CLIPS_AT_SURFACE) {
+    if (AREALIGHT_CLIPS_AT_SURFACE && outline.begun) {
         arealight_clipped_vertex(outline.clipped, space, outline.first);
     }
     return arealight_clipped_vector(outline.clipped, front);
+}
+
+// That of all that is seen of it.
+vec3 arealight_seen_vector(mat3 space, ArealightLocalShaped local, float front) {
+    if (AREALIGHT_HAS_OPENINGS && local.opening.is_between) {
+        return arealight_level_vector(space, local, AREALIGHT_NO_RIM, front);
+    }
+    return arealight_outline_form_factor(space, local.polygon.center, local.polygon.to_frame,
+                                         local.polygon.first, local.polygon.end, front);
 }
 
 // A lobe's space, as a profile's mean over a ring needs it.
@@ -214,8 +296,10 @@ float arealight_profile_mean(ArealightLocalShaped local, ArealightRingLobe lobe,
 // Error beyond the form factors': of the profile within a ring, where it is its mean.
 vec3 arealight_vector_form_factor(mat3 space, ArealightLocalShaped local) {
     float front = AREALIGHT_HAS_TWO_SIDED ? local.polygon.side : 1.0;
-    vec3 all = arealight_outline_form_factor(space, local.polygon.center, local.polygon.to_frame,
-                                             local.polygon.first, local.polygon.end, front);
+    vec3 all = arealight_seen_vector(space, local, front);
+    if (AREALIGHT_HAS_OPENINGS && local.profile == AREALIGHT_NO_ROW) {
+        return front * all;
+    }
     ArealightRingLobe lobe = arealight_ring_lobe(space);
     vec3 sum = vec3(0.0);
     vec3 within = vec3(0.0);
@@ -252,7 +336,7 @@ vec3 arealight_image_average(mat3 space, ArealightLocalShaped local, vec3 vector
 }
 
 #if AREALIGHT_SOLID_ANGLES
-// Times the profile's mean, as a cosine about its center sees the light.
+// Times the part that is seen and the profile's mean there, as a cosine about its center sees the light.
 float arealight_solid_angle(ArealightLocalShaped local) {
     vec3 center = local.polygon.center;
     mat3 space = arealight_frame_matrix(arealight_surface_frame(center, center));

@@ -46,7 +46,7 @@ fn light_layout() -> Vec<(String, u32)> {
         vertex_count,
         flags,
         texture_layer,
-        profile
+        shaping
     )
 }
 

@@ -56,6 +56,7 @@ fn point(case: &SupportedCase, images: &mut Images) -> EvalPoint {
         two_sided: case.light.two_sided,
         texture: None,
         profile: case.light.profile.clone(),
+        opening: case.light.opening,
     };
     if let Some((image, texture)) = shown {
         images.show(&mut light, &image.texture, texture.uv.clone());

@@ -123,7 +123,11 @@ impl<'a> Fields<'a> {
 
     /// The fields of an object.
     pub fn object(&self, field: &'static str) -> Result<Self, CaseError> {
-        let prefix = if field == "light" { "light." } else { field };
+        let prefix = match field {
+            "light" => "light.",
+            "opening" => "light.opening.",
+            other => other,
+        };
         match self.value(field)? {
             Value::Object(map) => Ok(Self { case: self.case.clone(), prefix, map, read: RefCell::default() }),
             other => Err(self.error(field, &describe("an object", other))),

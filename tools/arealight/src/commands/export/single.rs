@@ -19,9 +19,10 @@ pub const LICENCE_LINE: &str = concat!(
 /// The library in one file, with the options' defaults as these effects need them: a host may still define
 /// its own.
 pub fn resolved(mut text: String, effects: Effects) -> String {
-    let textured = effects.intersects(Effects::IMAGES);
+    let kinds = [("LIGHT_TEXTURES", Effects::IMAGES), ("SHAPED", Effects::SHAPED)];
+    let kinds = kinds.map(|(option, any)| (option.to_owned(), effects.intersects(any)));
     let options = Effects::all().iter().map(|effect| (option_of(effect), effects.contains(effect)));
-    for (option, is_on) in options.chain([("LIGHT_TEXTURES".into(), textured)]) {
+    for (option, is_on) in options.chain(kinds) {
         let define = |value: u8| format!("#define AREALIGHT_{option} {value}\n");
         text = text.replace(&define(u8::from(!is_on)), &define(u8::from(is_on)));
     }
@@ -37,7 +38,7 @@ fn option_of(effect: Effects) -> String {
         "profile" => "SHAPED".into(),
         "textured" => "TEXTURED_POLYGONS".into(),
         "textured_ellipse" => "TEXTURED_DISKS".into(),
-        name @ ("polygon" | "sphere" | "tube") => name.to_uppercase() + "S",
+        name @ ("polygon" | "sphere" | "tube" | "opening") => name.to_uppercase() + "S",
         name => name.to_uppercase(),
     }
 }
