@@ -2,7 +2,6 @@
 //! point is on is told by the plane in the world, not by vertices, whose heights drown in their lengths.
 
 use arealight_benches::pictures;
-use arealight_engine::Reference;
 use arealight_oracle::stream::Stream;
 use arealight_tests::materials::polygon_twin;
 use arealight_tests::prelude::*;

@@ -1,7 +1,6 @@
 //! Meshes of emitters, several faces that are one light: against their faces, against spheres that they are
 //! nearly, in frames and against the Monte Carlo reference.
 
-use arealight_engine::Reference;
 use arealight_tests::Path;
 use arealight_tests::lobe::{Lobe, Seen};
 use arealight_tests::prelude::*;
