@@ -86,6 +86,11 @@ fn specular_is_read_with_its_textures() {
 
 #[test]
 fn what_is_out_of_range_or_unknown_is_said() {
+    let with = |extension: &str, field: &str, value: f32| with(extension, &json!({ field: value }));
+    let film = |field: &str, value: f32| with_film(&json!({ "iridescenceFactor": 1, field: value }));
+    let transformed = json!({ "clearcoatFactor": 1, "clearcoatTexture": { "index": 0 },
+        "clearcoatRoughnessTexture": {
+        "index": 0, "extensions": { "KHR_texture_transform": { "rotation": 1 } } } });
     for (value, text) in [
         (
             json!({ "pbrMetallicRoughness": { "roughnessFactor": 1.5 } }),
@@ -96,29 +101,64 @@ fn what_is_out_of_range_or_unknown_is_said() {
             "emissiveFactor [0.0, 0.0, -1.0] is not in [0, 1]: clamped",
         ),
         (
-            json!({ "extensions": { "KHR_materials_ior": { "ior": 0.5 } } }),
-            "KHR_materials_ior: 0.5 is below 1: 1.5 is used",
-        ),
-        (
-            json!({ "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": -1 } } }),
-            "emissiveStrength -1 must be finite and not negative: 0 is used",
-        ),
-        (
             json!({ "alphaMode": "BLEND" }),
             "alphaMode BLEND: seen whole where alpha is 0.5 or more; its shadow is blended",
         ),
+        (with("KHR_materials_ior", "ior", 0.5), "KHR_materials_ior: 0.5 is below 1: 1.5 is used"),
         (
-            json!({ "extensions": { "KHR_materials_volume": { "thicknessFactor": 1 } } }),
+            with("KHR_materials_emissive_strength", "emissiveStrength", -1.0),
+            "emissiveStrength -1 must be finite and not negative: 0 is used",
+        ),
+        (
+            with("KHR_materials_volume", "thicknessFactor", 1.0),
             "KHR_materials_volume is not supported: ignored",
         ),
         (
-            json!({ "extensions": { "KHR_materials_clearcoat": { "clearcoatFactor": 1.5 } } }),
+            with("KHR_materials_clearcoat", "clearcoatFactor", 1.5),
             "clearcoatFactor [1.5] is not in [0, 1]: clamped",
         ),
+        (
+            clearcoat(&transformed),
+            "clearcoatTexture: mapped otherwise than clearcoatRoughnessTexture, drawn as that is",
+        ),
+        (film("iridescenceIor", 0.5), "iridescenceIor 0.5 is not in 1 to 100: 1.3 is used"),
+        (
+            film("iridescenceThicknessMaximum", -3.0),
+            "iridescenceThicknessMaximum -3 is no thickness: 0 is used",
+        ),
+        (film("iridescenceFactor", 2.0), "iridescenceFactor [2.0] is not in [0, 1]: clamped"),
+        (
+            with_anisotropy(&json!({ "anisotropyStrength": 2.0 })),
+            "anisotropyStrength [2.0] is not in [0, 1]: clamped",
+        ),
+        (
+            with_transmission(&json!({ "diffuseTransmissionFactor": 2.0 })),
+            "diffuseTransmissionFactor [2.0] is not in [0, 1]: clamped",
+        ),
     ] {
-        let scene = load(panel_with(value));
+        let scene = load(textured(value));
         assert_eq!(warnings(&scene), [format!("material '#0': {text}")]);
         assert!((0.0..=1.0).contains(&scene.materials[0].material.roughness));
+    }
+}
+
+#[test]
+fn what_is_wrong_with_extensions_is_named() {
+    let missing = json!({ "index": 7 });
+    for (extension, values, text) in [
+        ("clearcoat", json!({ "clearcoatFactor": "much" }), "material '#0': KHR_materials_clearcoat"),
+        ("clearcoat", json!({ "clearcoatFactor": 1, "clearcoatTexture": missing }), "textures[7]"),
+        ("sheen", json!({ "sheenColorFactor": [1, 1] }), "material '#0': KHR_materials_sheen"),
+        ("sheen", json!({ "sheenColorFactor": [1, 1, 1], "sheenColorTexture": missing }), "textures[7]"),
+        ("anisotropy", json!({ "anisotropyStrength": "much" }), "material '#0': KHR_materials_anisotropy"),
+        (
+            "diffuse_transmission",
+            json!({ "diffuseTransmissionFactor": "much" }),
+            "material '#0': KHR_materials_diffuse_transmission",
+        ),
+    ] {
+        let text_of = error(textured(with(&format!("KHR_materials_{extension}"), &values)));
+        assert!(text_of.contains(text), "{text_of}");
     }
 }
 
@@ -158,8 +198,13 @@ fn textures_are_decoded_and_shared() {
     assert_eq!((buffers.materials[0].normal_texture, buffers.materials[0].normal_scale), (1, 0.5));
 }
 
+/// A material with an extension.
+fn with(extension: &str, values: &Value) -> Value {
+    json!({ "extensions": { extension: values } })
+}
+
 fn clearcoat(values: &Value) -> Value {
-    json!({ "extensions": { "KHR_materials_clearcoat": values } })
+    with("KHR_materials_clearcoat", values)
 }
 
 #[test]
@@ -191,23 +236,6 @@ fn a_clear_coat_is_read_with_its_textures() {
 }
 
 #[test]
-fn what_is_wrong_with_a_coat_is_named() {
-    let message = |values: Value| error(textured(clearcoat(&values)));
-    let text = message(json!({ "clearcoatFactor": "much" }));
-    assert!(text.contains("material '#0': KHR_materials_clearcoat"), "{text}");
-    let missing = message(json!({ "clearcoatFactor": 1, "clearcoatTexture": { "index": 7 } }));
-    assert!(missing.contains("textures[7]"), "{missing}");
-    let transformed = json!({ "clearcoatFactor": 1, "clearcoatTexture": { "index": 0 },
-        "clearcoatRoughnessTexture": {
-        "index": 0, "extensions": { "KHR_texture_transform": { "rotation": 1 } } } });
-    assert_eq!(
-        warnings(&load(textured(clearcoat(&transformed)))),
-        ["material '#0': clearcoatTexture: mapped otherwise than clearcoatRoughnessTexture, drawn as that \
-            is"]
-    );
-}
-
-#[test]
 fn a_coat_has_a_normal_of_its_own_where_textures_bend_it_or_what_is_below() {
     let effects = |normal: Value, coat: Value| {
         let mut material = clearcoat(&coat);
@@ -233,7 +261,7 @@ fn a_coat_has_a_normal_of_its_own_where_textures_bend_it_or_what_is_below() {
 }
 
 fn with_sheen(values: &Value) -> Value {
-    json!({ "extensions": { "KHR_materials_sheen": values } })
+    with("KHR_materials_sheen", values)
 }
 
 #[test]
@@ -261,18 +289,8 @@ fn sheen_is_read_with_its_textures() {
     }
 }
 
-#[test]
-fn what_is_wrong_with_sheen_is_named() {
-    let text = error(textured(with_sheen(&json!({ "sheenColorFactor": [1, 1] }))));
-    assert!(text.contains("material '#0': KHR_materials_sheen"), "{text}");
-    let missing = error(textured(with_sheen(
-        &json!({ "sheenColorFactor": [1, 1, 1], "sheenColorTexture": { "index": 7 } }),
-    )));
-    assert!(missing.contains("textures[7]"), "{missing}");
-}
-
 fn with_film(values: &Value) -> Value {
-    json!({ "extensions": { "KHR_materials_iridescence": values } })
+    with("KHR_materials_iridescence", values)
 }
 
 #[test]
@@ -306,20 +324,6 @@ fn thin_films_are_read_with_their_textures() {
     let without = json!({ "iridescenceFactor": 1, "iridescenceThicknessMaximum": 0 });
     for none in [json!({}), with_film(&json!({})), with_film(&without)] {
         assert_eq!(film(none), None);
-    }
-}
-
-#[test]
-fn what_is_wrong_with_a_thin_film_is_said() {
-    for (field, value, said) in [
-        ("iridescenceIor", 0.5, "iridescenceIor 0.5 is not in 1 to 100: 1.3 is used"),
-        ("iridescenceThicknessMaximum", -3.0, "iridescenceThicknessMaximum -3 is no thickness: 0 is used"),
-        ("iridescenceFactor", 2.0, "iridescenceFactor [2.0] is not in [0, 1]: clamped"),
-    ] {
-        let mut film = json!({ "iridescenceFactor": 1 });
-        film[field] = value.into();
-        let scene = load(textured(with_film(&film)));
-        assert_eq!(warnings(&scene), [format!("material '#0': {said}")]);
     }
 }
 
@@ -417,7 +421,7 @@ fn materials_that_nothing_is_made_of_do_not_count() {
 }
 
 fn with_anisotropy(values: &Value) -> Value {
-    json!({ "extensions": { "KHR_materials_anisotropy": values } })
+    with("KHR_materials_anisotropy", values)
 }
 
 #[test]
@@ -440,14 +444,6 @@ fn anisotropy_is_read_with_its_texture() {
         assert_eq!((scene.materials[0].anisotropy_texture, scene.textures.len()), (None, 0));
         assert!(!scene.effects().contains(Effects::ANISOTROPY));
     }
-}
-
-#[test]
-fn what_is_wrong_with_anisotropy_is_named() {
-    let text = error(textured(with_anisotropy(&json!({ "anisotropyStrength": "much" }))));
-    assert!(text.contains("material '#0': KHR_materials_anisotropy"), "{text}");
-    let scene = load(textured(with_anisotropy(&json!({ "anisotropyStrength": 2.0 }))));
-    assert_eq!(warnings(&scene), ["material '#0': anisotropyStrength [2.0] is not in [0, 1]: clamped"]);
 }
 
 fn with_transmission(values: &Value) -> Value {
@@ -510,15 +506,4 @@ fn panes_are_read_with_their_texture() {
     let without = load(textured(with_pane(json!({ "transmissionTexture": { "index": 0 } }))));
     assert_eq!((without.materials[0].glass_texture, without.textures.len()), (None, 0));
     assert!(!without.effects().contains(Effects::GLASS));
-}
-
-#[test]
-fn what_is_wrong_with_diffuse_transmission_is_named() {
-    let text = error(textured(with_transmission(&json!({ "diffuseTransmissionFactor": "much" }))));
-    assert!(text.contains("material '#0': KHR_materials_diffuse_transmission"), "{text}");
-    let scene = load(textured(with_transmission(&json!({ "diffuseTransmissionFactor": 2.0 }))));
-    assert_eq!(
-        warnings(&scene),
-        ["material '#0': diffuseTransmissionFactor [2.0] is not in [0, 1]: clamped"]
-    );
 }
