@@ -227,7 +227,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 
 impl ManyLights {
     fn table(&self) -> Table {
-        let heads = ["lamps", "shaded by", "lights a pixel", "ms", "lists, KB", "RMSE", "largest"];
+        let heads = "lamps | shaded by | lights a pixel | ms | lists, KB | RMSE | largest";
         let mut before = 0;
         let row = |row: &Row| {
             // A number once, where its rows begin
@@ -244,7 +244,7 @@ impl ManyLights {
                 error(row.largest),
             ]
         };
-        Table::new(&heads, self.rows.iter().map(row))
+        Table::new(heads, self.rows.iter().map(row))
     }
 
     /// For a terminal.
@@ -279,7 +279,7 @@ fn difference(truth: &[Vec4], found: &[Vec4]) -> [f64; 2] {
 
 /// A square floor of `side` metres and of this roughness about the origin, in y, of albedo .5; and a camera
 /// from above that sees all of it in a picture of `aspect`. Without lights.
-fn floor(roughness: f32, side: f64, aspect: f64) -> Scene {
+pub fn floor(roughness: f32, side: f64, aspect: f64) -> Scene {
     let sweep = include_bytes!("../../scenes/sweep.glb");
     let mut scene = Scene::from_bytes(sweep, "floor").expect("the scene in the repository is valid");
     let floor = scene.materials.iter().position(|material| material.name == "floor");
