@@ -64,19 +64,16 @@ fn buffers() -> Cases {
             coat_weight: 0.5 * glossy,
             coat_normal: surface.vector(&mut random),
             coat_roughness: surface.number(&mut random),
-            // Charlie reflects more than it gets where it is seen at grazing angles
-            sheen_color: [0.0; 3],
+            // Black: Charlie reflects more than it gets where it is seen at grazing angles
             sheen_roughness: surface.number(&mut random),
-            interface_f0: 0.0,
             interface_f90: glossy,
             diffuse_roughness: surface.number(&mut random),
-            reserved: 0.0,
             tangent: surface.vector(&mut random),
             tangent_roughness: surface.number(&mut random),
             film_weight: 0.5 * glossy,
             film_ior: surface.number(&mut random),
             film_thickness: surface.number(&mut random),
-            reserved1: 0.0,
+            ..bytemuck::Zeroable::zeroed()
         });
     }
     buffers

@@ -65,9 +65,8 @@ impl View {
             .reference(Reference { samples, seed: 5, shadows, coupled: false }, |_| {})
             .expect("it samples");
         let radiance = renderer.radiance().expect("a picture");
-        let download = |image: &Image| -> Vec<[f32; 4]> {
-            image.download(Usage::COMPUTE_READ).expect("a picture")
-        };
+        let download =
+            |image: &Image| -> Vec<[f32; 4]> { image.download(Usage::COMPUTE_READ).expect("a picture") };
         let (positions, normals) =
             (download(&renderer.g_buffer()[Plane::Position]), download(&renderer.g_buffer()[Plane::Normal]));
         let vector = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z).as_dvec3();

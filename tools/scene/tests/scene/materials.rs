@@ -59,15 +59,13 @@ fn with_specular(values: &Value) -> Value {
 
 #[test]
 fn specular_is_read_with_its_textures() {
-    let scene = load(textured(with_specular(&json!({
+    let (scene, gpu) = read(with_specular(&json!({
         "specularFactor": 0.5, "specularTexture": { "index": 0 },
-        "specularColorFactor": [1, 0.5, 50], "specularColorTexture": { "index": 0 } }))));
-    assert_eq!(warnings(&scene), [""; 0]);
+        "specularColorFactor": [1, 0.5, 50], "specularColorTexture": { "index": 0 } })));
     let read = &scene.materials[0];
     // The colour is sRGB, the weight is not
     let textures = [read.specular_texture, read.specular_color_texture].map(Option::unwrap);
     assert_eq!(textures.map(|index| scene.textures[index as usize].srgb), [false, true]);
-    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
     assert_eq!([gpu.specular_texture, gpu.specular_color_texture], textures);
     // What is above 1 is cut off by the kernel, below the colour's texture
     let f0 = Vec3::from_array(gpu.dielectric_f0);
@@ -172,6 +170,14 @@ fn textured(material: Value) -> Writer {
     writer
 }
 
+/// What is read of a material with that texture, without a warning: the scene, and what the GPU has of it.
+fn read(material: Value) -> (Scene, GpuMaterial) {
+    let scene = load(textured(material));
+    assert_eq!(warnings(&scene), [""; 0]);
+    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
+    (scene, gpu)
+}
+
 #[test]
 fn textures_are_decoded_and_shared() {
     let scene = load(textured(json!({
@@ -209,17 +215,15 @@ fn clearcoat(values: &Value) -> Value {
 
 #[test]
 fn a_clear_coat_is_read_with_its_textures() {
-    let scene = load(textured(clearcoat(&json!({
+    let (scene, gpu) = read(clearcoat(&json!({
         "clearcoatFactor": 0.75, "clearcoatTexture": { "index": 0 },
         "clearcoatRoughnessFactor": 0.25, "clearcoatRoughnessTexture": { "index": 0 },
-        "clearcoatNormalTexture": { "index": 0, "scale": 0.5 } }))));
-    assert_eq!(warnings(&scene), [""; 0]);
+        "clearcoatNormalTexture": { "index": 0, "scale": 0.5 } })));
     let read = &scene.materials[0];
     assert_eq!((read.material.coat, read.material.coat_roughness), (0.75, 0.25));
     assert_eq!((read.coat_texture, read.coat_roughness_texture), (Some(0), Some(0)));
     assert_eq!((read.coat_normal_texture, read.coat_normal_scale), (Some(0), 0.5));
     assert!(!scene.textures[0].srgb);
-    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
     assert_eq!((gpu.coat, gpu.coat_roughness), (0.75, 0.25));
     assert_eq!([gpu.coat_texture, gpu.coat_roughness_texture, gpu.coat_normal_texture], [0; 3]);
     assert_eq!(gpu.coat_normal_scale, 0.5);
@@ -260,16 +264,14 @@ fn a_coat_has_a_normal_of_its_own_where_textures_bend_it_or_what_is_below() {
     assert_eq!(effects(texture(1.0), json!({ "clearcoatFactor": 0 })), Effects::empty());
 }
 
-fn with_sheen(values: &Value) -> Value {
-    with("KHR_materials_sheen", values)
-}
-
 #[test]
 fn sheen_is_read_with_its_textures() {
-    let scene = load(textured(with_sheen(&json!({
+    let (scene, gpu) = read(with(
+        "KHR_materials_sheen",
+        &json!({
         "sheenColorFactor": [0.75, 0.5, 0.25], "sheenColorTexture": { "index": 0 },
-        "sheenRoughnessFactor": 0.25, "sheenRoughnessTexture": { "index": 0 } }))));
-    assert_eq!(warnings(&scene), [""; 0]);
+        "sheenRoughnessFactor": 0.25, "sheenRoughnessTexture": { "index": 0 } }),
+    ));
     let read = &scene.materials[0];
     assert_eq!(read.material.sheen_color.to_array(), [0.75, 0.5, 0.25]);
     assert_eq!(read.material.sheen_roughness, 0.25);
@@ -277,11 +279,10 @@ fn sheen_is_read_with_its_textures() {
     let textures = [read.sheen_color_texture, read.sheen_roughness_texture].map(Option::unwrap);
     assert_eq!(textures.map(|index| scene.textures[index as usize].srgb), [true, false]);
     assert!(scene.effects().contains(Effects::SHEEN));
-    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
     assert_eq!((gpu.sheen_color, gpu.sheen_roughness), ([0.75, 0.5, 0.25], 0.25));
     assert_eq!([gpu.sheen_color_texture, gpu.sheen_roughness_texture], textures);
     // None without the extension, and none of its textures where its colour is black, which is the default
-    for without in [json!({}), with_sheen(&json!({ "sheenColorTexture": { "index": 0 } }))] {
+    for without in [json!({}), with("KHR_materials_sheen", &json!({ "sheenColorTexture": { "index": 0 } }))] {
         let scene = load(textured(without));
         let read = &scene.materials[0];
         assert_eq!((read.sheen_color_texture, scene.textures.len()), (None, 0));
@@ -295,14 +296,12 @@ fn with_film(values: &Value) -> Value {
 
 #[test]
 fn thin_films_are_read_with_their_textures() {
-    let scene = load(textured(with_film(&json!({
+    let (scene, gpu) = read(with_film(&json!({
         "iridescenceFactor": 0.5, "iridescenceTexture": { "index": 0 }, "iridescenceIor": 1.5,
         "iridescenceThicknessMinimum": 200, "iridescenceThicknessMaximum": 600,
-        "iridescenceThicknessTexture": { "index": 0 } }))));
-    assert_eq!(warnings(&scene), [""; 0]);
+        "iridescenceThicknessTexture": { "index": 0 } })));
     let read = &scene.materials[0];
     assert_eq!(read.material.film, Some(ThinFilm { weight: 0.5, ior: 1.5, thickness: 600.0 }));
-    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
     let film = [gpu.film_weight, gpu.film_ior, gpu.film_least_thickness, gpu.film_thickness];
     assert_eq!(film, [0.5, 1.5, 200.0, 600.0]);
     assert_eq!(
@@ -426,16 +425,14 @@ fn with_anisotropy(values: &Value) -> Value {
 
 #[test]
 fn anisotropy_is_read_with_its_texture() {
-    let scene = load(textured(with_anisotropy(&json!({
-        "anisotropyStrength": 0.75, "anisotropyRotation": 0.5, "anisotropyTexture": { "index": 0 } }))));
-    assert_eq!(warnings(&scene), [""; 0]);
+    let (scene, gpu) = read(with_anisotropy(&json!({
+        "anisotropyStrength": 0.75, "anisotropyRotation": 0.5, "anisotropyTexture": { "index": 0 } })));
     let read = &scene.materials[0];
     assert_eq!((read.anisotropy_strength, read.anisotropy_rotation), (0.75, 0.5));
     assert!(scene.notes[0].to_string().contains("strongly anisotropic"), "{:?}", scene.notes);
     let texture = read.anisotropy_texture.unwrap();
     assert!(!scene.textures[texture as usize].srgb);
     assert!(scene.effects().contains(Effects::ANISOTROPY));
-    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
     assert_eq!((gpu.anisotropy_texture, gpu.anisotropy_strength), (texture, 0.75));
     assert_eq!(gpu.anisotropy_direction, [0.5_f32.cos(), 0.5_f32.sin()]);
     // None without the extension, nor of its texture where the strength is zero, which is the default
@@ -453,15 +450,13 @@ fn with_transmission(values: &Value) -> Value {
 
 #[test]
 fn diffuse_transmission_is_read_with_both_textures() {
-    let scene = load(textured(with_transmission(&json!({
+    let (scene, gpu) = read(with_transmission(&json!({
         "diffuseTransmissionFactor": 0.75, "diffuseTransmissionColorFactor": [0.25, 0.5, 1.0],
-        "diffuseTransmissionTexture": { "index": 0 }, "diffuseTransmissionColorTexture": { "index": 0 } }))));
-    assert_eq!(warnings(&scene), [""; 0]);
+        "diffuseTransmissionTexture": { "index": 0 }, "diffuseTransmissionColorTexture": { "index": 0 } })));
     let read = &scene.materials[0];
     assert_eq!(read.material.transmission, 0.75);
     assert_eq!(read.material.transmission_color.to_array(), [0.25, 0.5, 1.0]);
     assert!(scene.effects().contains(Effects::TRANSMISSION));
-    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
     assert_eq!((gpu.transmission, gpu.transmission_color), (0.75, [0.25, 0.5, 1.0]));
     let textures = [gpu.transmission_texture, gpu.transmission_color_texture];
     assert_eq!(textures.map(|index| scene.textures[index as usize].srgb), [false, true]);
@@ -489,11 +484,8 @@ fn panes_are_read_with_their_texture() {
         json!({ "pbrMetallicRoughness": { "metallicFactor": 0, "baseColorFactor": [0.25, 0.5, 1, 1] },
                 "extensions": { "KHR_materials_transmission": values } })
     };
-    let scene = load(textured(with_pane(
-        json!({ "transmissionFactor": 0.75, "transmissionTexture": { "index": 0 } }),
-    )));
-    assert_eq!(warnings(&scene), [""; 0]);
-    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
+    let (scene, gpu) =
+        read(with_pane(json!({ "transmissionFactor": 0.75, "transmissionTexture": { "index": 0 } })));
     assert_eq!((gpu.glass, scene.textures[gpu.glass_texture as usize].srgb), (0.75, false));
     assert!(scene.effects().contains(Effects::GLASS) && !scene.effects().contains(Effects::TRANSMISSION));
     // A quarter of the light below the interface is diffused; what Fresnel's term leaves of the rest passes
