@@ -175,7 +175,6 @@ fn row(level: &str, places: &[Place], excess: &[f64]) -> Row {
 
 impl Furnace {
     fn table(&self) -> Table {
-        let heads = ["level", "largest loss", "at roughness, angle", "largest gain", "mean"];
         let cells = |row: &Row| {
             vec![
                 row.level.clone(),
@@ -185,7 +184,10 @@ impl Furnace {
                 format!("{:.2e}", row.mean),
             ]
         };
-        Table { heads: heads.map(String::from).into(), rows: self.rows.iter().map(cells).collect() }
+        Table::new(
+            "level | largest loss | at roughness, angle | largest gain | mean",
+            self.rows.iter().map(cells),
+        )
     }
 
     /// A table for a terminal.

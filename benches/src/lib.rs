@@ -13,7 +13,6 @@
 //! | [`kernel`] | the kernel that computes form factors of hard cases by one of them |
 //! | [`stability`] | every family of hard cases through every method, judged |
 //! | [`shapes`] | the kernel that evaluates disks, spheres and tubes |
-//! | [`shape_cost`] | the time of each way to a disk, a sphere or a tube, and its error |
 //! | [`shape_stability`] | families of hard shapes on a device, judged |
 //! | [`materials`] | the error of each material of a scene against the reference |
 //! | [`shadows`] | how far a picture with shadows is from the reference |
@@ -22,9 +21,8 @@
 //! | [`sections`] | the sections of documents that commands write |
 //! | [`report`] | what came of it: as text, as Markdown |
 //! | [`pictures`] | pictures as light textures of an engine |
-//! | [`start`] | what a benchmark begins with |
 //!
-//! `arealight bench` is the way to run them; `cargo bench` has those of time.
+//! `arealight bench` is the way to run them.
 
 #![allow(clippy::missing_errors_doc, clippy::missing_panics_doc)] // what the types say
 
@@ -45,10 +43,8 @@ pub mod sections;
 pub mod shadow_levels;
 pub mod shadow_motion;
 pub mod shadows;
-pub mod shape_cost;
 pub mod shape_stability;
 pub mod shapes;
 pub mod stability;
-pub mod start;
 mod table;
 pub mod textures;

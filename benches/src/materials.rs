@@ -238,10 +238,9 @@ impl MaterialErrors {
             cells.extend(is_text.then(|| percent(noise)));
             cells
         };
-        let mut heads = vec!["material", if is_text { "pixels" } else { "effects" }];
-        heads.extend(["mean over reference", "RMSE over mean", "by two lobes", "over half vectors"]);
-        heads.extend(is_text.then_some("reference's noise"));
-        Table::new(&heads, self.materials.iter().map(row))
+        let (second, last) = if is_text { ("pixels", " | reference's noise") } else { ("effects", "") };
+        let errors = "mean over reference | RMSE over mean | by two lobes | over half vectors";
+        Table::new(&format!("material | {second} | {errors}{last}"), self.materials.iter().map(row))
     }
 
     /// The same as Markdown, with the command that repeats it.

@@ -179,27 +179,13 @@ pub struct ShadowMotion {
     pub scenes: Vec<SceneFilms>,
 }
 
-/// A judged frame of a film in which everything moves.
-#[derive(Debug, Clone)]
-pub struct Still {
-    /// The scene.
-    pub scene: String,
-    /// The frame.
-    pub frame: u32,
-    /// The part of each pixel's light that arrives; none where there is no light.
-    pub truth: Vec<Option<f64>>,
-    /// What each scheme found of it, in the order of [`Scheme::ALL`].
-    pub found: Vec<Vec<f64>>,
-}
-
-/// Runs every scheme over films of each scene. `progress` is told of frames done, `show` of stills.
+/// Runs every scheme over films of each scene. `progress` is told of frames done.
 pub fn run(
     host: &Host,
     table: &LightTable,
     scenes: &[Scene],
     options: &Options,
     progress: &dyn Fn(u64),
-    show: &dyn Fn(Still),
 ) -> Result<ShadowMotion, ShadowLevelsError> {
     let engine = Engine::new(host.clone(), table, TableFormat::default())?;
     let run_scene = |scene: &Scene| -> Result<SceneFilms, ShadowLevelsError> {
@@ -212,7 +198,6 @@ pub fn run(
                 film.advance(frame)?;
                 let is_judged = options.is_judged(motion, frame);
                 let truth = if is_judged { Some(film.truth(options.truth)?) } else { None };
-                let mut still = (motion == Motion::Both).then(Vec::new);
                 for (place, sums) in sums.iter_mut().enumerate() {
                     let found = film.shadows(place, frame)?;
                     if let Some(truth) = &truth {
@@ -220,9 +205,6 @@ pub fn run(
                         if let Some(before) = &before {
                             sums.add_lag(before, truth, &found);
                         }
-                    }
-                    if let Some(still) = &mut still {
-                        still.push(found);
                     }
                 }
                 before = None;
@@ -234,9 +216,6 @@ pub fn run(
                     let errors = truth.errors(&truth.half)?;
                     noise.0 += errors.rmse.powi(2) * errors.lit as f64;
                     noise.1 += errors.lit;
-                }
-                if let (Some(found), Some(truth)) = (still, truth) {
-                    show(Still { scene: scene.name.clone(), frame, truth: truth.mean.parts, found });
                 }
                 progress(1);
             }

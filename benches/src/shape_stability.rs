@@ -188,16 +188,9 @@ pub fn markdown(rows: &[ShapeRow]) -> String {
         cells.extend(published.unwrap_or_default());
         cells
     };
-    let heads = [
-        "family",
-        "largest error",
-        "promised",
-        "out of [0, 1]",
-        "verdict",
-        "published: not finite",
-        "its largest error",
-    ];
-    let mut text = Table::new(&heads, rows.iter().map(row)).to_markdown();
+    let heads = "family | largest error | promised | out of [0, 1] | verdict | published: not finite | \
+        its largest error";
+    let mut text = Table::new(heads, rows.iter().map(row)).to_markdown();
     for row in rows {
         let Some(worst) = &row.shortfall else { continue };
         let _ = writeln!(

@@ -30,14 +30,6 @@ pub enum ShapeFunction {
     /// `arealight_lobe_shape` of an ellipse of a center a and axes b and c, and of a sphere of that center
     /// and the radius b.x: see the kernel for the lobe's matrix.
     Lobe = 6,
-    /// As `Published`, with the cheap horizon alone.
-    PublishedCheap = 7,
-    /// The whole ellipse, exactly, with a sphere's horizon.
-    SphereHorizon = 8,
-    /// A polygon of the ellipse's area, whose number of vertices is the third specialisation constant.
-    Polygon = 9,
-    /// None: what the kernel itself costs.
-    Nothing = 10,
 }
 
 /// What a call is given.

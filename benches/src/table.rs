@@ -9,9 +9,9 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// A table of those heads.
-    pub fn new(heads: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Self {
-        Self { heads: heads.iter().map(ToString::to_string).collect(), rows: rows.into_iter().collect() }
+    /// A table of those heads, as a line of Markdown has them.
+    pub fn new(heads: &str, rows: impl IntoIterator<Item = Vec<String>>) -> Self {
+        Self { heads: heads.split(" | ").map(str::to_owned).collect(), rows: rows.into_iter().collect() }
     }
 
     pub fn to_text(&self) -> String {

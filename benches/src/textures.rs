@@ -183,13 +183,7 @@ pub fn markdown(costs: &[TextureCost]) -> String {
             format!("{:.2}", cost.memory),
         ]
     };
-    let heads = [
-        "texels",
-        "plain mips, ms per megapixel",
-        "pyramid",
-        "time, mips = 1",
-        "quartiles",
-        "memory, source = 1",
-    ];
-    Table::new(&heads, costs.iter().map(row)).to_markdown()
+    let heads = "texels | plain mips, ms per megapixel | pyramid | time, mips = 1 | quartiles | \
+        memory, source = 1";
+    Table::new(heads, costs.iter().map(row)).to_markdown()
 }

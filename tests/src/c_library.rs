@@ -97,6 +97,16 @@ pub fn c_lamp(light: &Light) -> ArealightLight {
     }
 }
 
+/// An image as C has it.
+pub fn c_image(image: &Image, usage: Usage) -> ArealightImage {
+    ArealightImage { view: image.view().as_raw(), layout: usage.layout.as_raw().cast_unsigned(), reserved: 0 }
+}
+
+/// All of a buffer as C has it.
+pub fn whole(buffer: &Buffer) -> ArealightBuffer {
+    ArealightBuffer { buffer: buffer.handle().as_raw(), offset: 0, range: AREALIGHT_WHOLE_SIZE }
+}
+
 /// A frame of no pixels and no light.
 pub const NO_FRAME: ArealightFrame = ArealightFrame {
     width: 0,
@@ -277,11 +287,6 @@ impl<'a> CLibrary<'a> {
         // Point a set at them, and shade
         let format = RadianceFormat::Rgba32Float;
         let radiance = one_pixel::stored(self.engine, format);
-        let image = |image: &Image, usage: Usage| ArealightImage {
-            view: image.view().as_raw(),
-            layout: usage.layout.as_raw().cast_unsigned(),
-            reserved: 0,
-        };
         let planes = pixel.planes();
         let plane = |plane: Plane| match planes[plane] {
             Some(Resource::SampledImage { view, layout }) => {
@@ -289,18 +294,13 @@ impl<'a> CLibrary<'a> {
             }
             _ => ArealightImage::default(),
         };
-        let whole = |buffer: &Buffer| ArealightBuffer {
-            buffer: buffer.handle().as_raw(),
-            offset: 0,
-            range: AREALIGHT_WHOLE_SIZE,
-        };
         let resources = ArealightResources {
             lights: whole(&lights_buffer),
             light_vertices: whole(&vertices),
             shapes: if packed.shapes_size > 0 { whole(&shapes) } else { ArealightBuffer::default() },
             planes: Plane::ALL.map(plane),
             light_textures,
-            radiance: image(&radiance, Usage::COMPUTE_WRITE),
+            radiance: c_image(&radiance, Usage::COMPUTE_WRITE),
             ..ArealightResources::default()
         };
         let frame = ArealightFrame {

@@ -3,7 +3,7 @@
 use arealight::Light;
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight_engine::{Engine, SceneRenderer, TileCounts};
-use arealight_scene::{Scene, SceneBuffers};
+use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::{Vec3, Vec4};
 use std::path::Path;
 
@@ -22,9 +22,21 @@ pub fn with_renderer<T>(
     act: impl FnOnce(&mut SceneRenderer<'_>) -> T,
 ) -> T {
     let camera = scene.camera(None, f64::from(size[0]) / f64::from(size[1])).expect("a camera");
-    let buffers = SceneBuffers::new(scene, camera.position).expect("our own scenes fit");
-    let constants = buffers.constants(&camera, size, Vec3::ZERO);
-    act(&mut SceneRenderer::new(engine, &buffers, lights, constants, size).expect("a renderer"))
+    with_view(engine, scene, lights, (&camera, size), |renderer, _| act(renderer))
+}
+
+/// Hands on the view of a scene from a camera, under `lights`, and the scene's buffers.
+pub fn with_view<T>(
+    engine: &Engine,
+    scene: &Scene,
+    lights: &[Light],
+    (camera, size): (&Camera, [u32; 2]),
+    act: impl FnOnce(&mut SceneRenderer<'_>, &SceneBuffers) -> T,
+) -> T {
+    let buffers = SceneBuffers::new(scene, camera.position).expect("it fits");
+    let constants = buffers.constants(camera, size, Vec3::ZERO);
+    let renderer = SceneRenderer::new(engine, &buffers, lights, constants, size);
+    act(&mut renderer.expect("a renderer"), &buffers)
 }
 
 /// The scene without what it emits, which would be rounded with what is reflected.

@@ -56,6 +56,57 @@ impl Random {
     }
 }
 
+/// How wild the numbers of a fuzzed case are.
+#[derive(Debug, Clone, Copy)]
+pub enum Numbers {
+    /// Any bits: mostly of extreme size, NaN or infinity one time in 256.
+    Any,
+    /// Of ordinary size, and any bits one time in eight.
+    SomeAny,
+    /// Of ordinary size times one power of two from 2^-149 to 2^127.
+    Scaled(f64),
+    /// Whole numbers up to four times such a power.
+    Whole(f64),
+    /// Special numbers only: both zeros, the smallest and largest, infinities, NaN, one.
+    Special,
+}
+
+const SPECIAL: [f32; 12] = {
+    let [least, most, infinity] = [f32::MIN_POSITIVE, f32::MAX, f32::INFINITY];
+    [0.0, -0.0, 1.0, -1.0, least, -1e-45, 1e-45, most, f32::MIN, infinity, -infinity, f32::NAN]
+};
+
+impl Numbers {
+    /// One of them.
+    pub fn choose(random: &mut Random) -> Self {
+        let scale = random.between(-149.0, 128.0).exp2();
+        match random.bits() % 5 {
+            0 => Self::Any,
+            1 => Self::SomeAny,
+            2 => Self::Scaled(scale),
+            3 => Self::Whole(scale),
+            _ => Self::Special,
+        }
+    }
+
+    /// A number.
+    pub fn number(self, random: &mut Random) -> f32 {
+        match self {
+            Self::Any => f32::from_bits(random.bits()),
+            Self::SomeAny if random.bits().is_multiple_of(8) => f32::from_bits(random.bits()),
+            Self::SomeAny => random.between(-1.0, 1.0) as f32,
+            Self::Scaled(scale) => (random.between(-1.0, 1.0) * scale) as f32,
+            Self::Whole(scale) => (random.between(-4.0, 4.0).round() * scale) as f32,
+            Self::Special => SPECIAL[random.bits() as usize % SPECIAL.len()],
+        }
+    }
+
+    /// So many.
+    pub fn vector<const N: usize>(self, random: &mut Random) -> [f32; N] {
+        std::array::from_fn(|_| self.number(random))
+    }
+}
+
 /// A white Lambert surface: with a radiance of one, the answer is the form factor.
 pub fn lambert_surface() -> Surface {
     Surface { diffuse_albedo: DVec3::ONE, ..Surface::default() }

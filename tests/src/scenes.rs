@@ -1,5 +1,6 @@
 //! Scenes made of a few triangles.
 
+use arealight::{Light, LightShape};
 use arealight_oracle::material::Material;
 use arealight_scene::{Scene, SceneMaterial, Triangle};
 use glam::{DVec3, Vec2, Vec3, Vec4};
@@ -42,6 +43,20 @@ pub fn scene_of(triangles: &[[DVec3; 3]], material: SceneMaterial) -> Scene {
         bounds: triangles.iter().flatten().copied().collect(),
         ..Scene::default()
     }
+}
+
+/// A level square about a point on the axis, as two triangles that face up.
+pub fn square(height: f64, half: f64) -> [[DVec3; 3]; 2] {
+    let corner = |x: f64, z: f64| DVec3::new(x * half, height, z * half);
+    let [a, b, c, d] = [corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)];
+    [[a, b, c], [a, c, d]]
+}
+
+/// A quad of 1.6 by 0.9 about a place, which faces down.
+pub fn quad_light(place: DVec3) -> Light {
+    let outline = [(-0.8, -0.45), (0.8, -0.45), (0.8, 0.45), (-0.8, 0.45)];
+    let corners = outline.map(|(x, z)| place + DVec3::new(x, 0.0, z));
+    Light { radiance: Vec3::splat(5.0), shape: LightShape::Polygon(corners.to_vec()), ..Light::default() }
 }
 
 /// The 12 triangles of a box along the axes, facing outwards.

@@ -256,20 +256,6 @@ def lights(found):
     return svg(made, "Time and error over the number of lights, with all of them and by tiles")
 
 
-def shapes(found):
-    """Error against time of the ways to a disk that crosses the horizon."""
-    ours = ("disk, exact", "disk, difference")
-    dots = [(cost["method"], cost["ratio"]["median"], cost["error"]["rms"], OURS if cost["method"] in ours else THEIRS)
-            for cost in found["costs"] if cost["error"]]
-    title = f"Error against time of disks that cross the horizon: {found['device']}"
-    made, axes = figure(860, 440)
-    axes.set_title(title, loc="left")
-    axes.set_xlabel("time; exact disk = 1")
-    axes.set_ylabel("RMS error of the form factor")
-    scatter(axes, dots, y_name=short)
-    return svg(made, title)
-
-
 # What `inspect` finds
 
 
@@ -403,7 +389,7 @@ def drawn_by_name(kind):
     return globals()[kind]
 
 
-KINDS = ("stability", "lights", "shapes", "lobes", "errors", "entries", "pyramid", "report")
+KINDS = ("stability", "lights", "lobes", "errors", "entries", "pyramid", "report")
 
 
 def main():

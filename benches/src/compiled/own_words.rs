@@ -56,12 +56,11 @@ impl OwnWords {
             .filter(|(name, value)| self.rows.iter().any(|(_, row)| of(row, name) != Some(*value)))
             .map(|(name, _)| name.as_str())
             .collect();
-        let heads: Vec<&str> = [""].into_iter().chain(names.iter().copied()).collect();
         let cells = |(name, row): &(String, Vec<(String, u64)>)| {
             let values =
                 names.iter().map(|name| of(row, name).map_or("–".to_owned(), |one| one.to_string()));
             [name.clone()].into_iter().chain(values).collect()
         };
-        Table::new(&heads, self.rows.iter().map(cells))
+        Table::new(&[&[""], &names[..]].concat().join(" | "), self.rows.iter().map(cells))
     }
 }

@@ -4,22 +4,8 @@ use super::{Compiled, Family, Measured};
 use crate::table::Table;
 use std::fmt::Write as _;
 
-const HEADS: [&str; 14] = [
-    "",
-    "ratio",
-    "inverse throughput",
-    "VGPRs",
-    "waves",
-    "SGPRs",
-    "spilled VGPRs",
-    "spilled SGPRs",
-    "scratch",
-    "instructions",
-    "branches",
-    "bytes",
-    "latency",
-    "CPU s",
-];
+const HEADS: &str = " | ratio | inverse throughput | VGPRs | waves | SGPRs | spilled VGPRs | spilled SGPRs | \
+    scratch | instructions | branches | bytes | latency | CPU s";
 
 impl Compiled {
     /// The tables for a terminal.
@@ -70,7 +56,7 @@ fn crowded(family: &Family) -> String {
 }
 
 fn table(family: &Family) -> Table {
-    Table::new(&HEADS, family.rows.iter().map(cells))
+    Table::new(HEADS, family.rows.iter().map(cells))
 }
 
 fn cells(row: &Measured) -> Vec<String> {

@@ -38,9 +38,9 @@ pub fn results(runs: &[(String, Ladder)]) -> String {
         }
         cells
     };
-    let heads =
-        ["", "driver", "1 light", "4 lights", "16", "4 lights, clipless = 1", "a light more, clipless = 1"];
-    let summary = Table::new(&heads, runs.iter().map(summary)).to_markdown();
+    let heads = " | driver | 1 light | 4 lights | 16 | 4 lights, clipless = 1 | \
+        a light more, clipless = 1";
+    let summary = Table::new(heads, runs.iter().map(summary)).to_markdown();
     let mut text = format!("{HEAD}\n{summary}{LEGEND}");
     for (_, run) in runs {
         let _ = write!(text, "\n## {}\n\n{}", run.device, run.to_markdown());

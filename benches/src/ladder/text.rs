@@ -75,21 +75,8 @@ impl Ladder {
             cells
         };
         Table::new(
-            &[
-                "method",
-                "RMSE",
-                "of it fit",
-                "table",
-                "integral",
-                "p99",
-                "worst",
-                "bias",
-                "NaN",
-                "ms",
-                "time, clipless = 1",
-                "samples, equal error",
-                "equal time",
-            ],
+            "method | RMSE | of it fit | table | integral | p99 | worst | bias | NaN | ms | \
+            time, clipless = 1 | samples, equal error | equal time",
             self.rows_of(lights).map(row),
         )
     }
@@ -105,7 +92,7 @@ impl Ladder {
                 if samples.measured { "measured" } else { "in proportion" }.to_owned(),
             ]
         };
-        Table::new(&["samples", "RMSE", "p99", "worst", "ms", "time is"], self.monte_carlo.iter().map(row))
+        Table::new("samples | RMSE | p99 | worst | ms | time is", self.monte_carlo.iter().map(row))
     }
 
     fn effects(&self) -> Table {
@@ -114,7 +101,7 @@ impl Ladder {
             vec![effect.effect.clone(), spread(&effect.on), used]
         };
         Table::new(
-            &["effect", "turned on, time without it = 1", "lights that need it, quads = 1"],
+            "effect | turned on, time without it = 1 | lights that need it, quads = 1",
             self.effects.iter().map(row),
         )
     }

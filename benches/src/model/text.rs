@@ -123,12 +123,12 @@ fn paths(costs: &Costs) -> Table {
             rows.push(vec![format!("+ {name}: {path}"), format!("{cost:.0}"), String::new()]);
         }
     }
-    Table::new(&["", "ours", "clipless"], rows)
+    Table::new(" | ours | clipless", rows)
 }
 
 /// A row a scene and a size of wave, and one of all scenes.
 fn frames(scenes: &[Modelled], costs: &Costs) -> Table {
-    let heads = ["", "ours", "clipless", "clipless, straight", "ratio", "ratio to straight"];
+    let heads = " | ours | clipless | clipless, straight | ratio | ratio to straight";
     let mut rows = vec![];
     for (wave, name) in [Wave::Of32, Wave::Of64].into_iter().zip(["8 x 4", "8 x 8"]) {
         let mut sum = [0.0; 3];
@@ -141,7 +141,7 @@ fn frames(scenes: &[Modelled], costs: &Costs) -> Table {
         let waves: u64 = scenes.iter().map(|scene| scene.counts[wave as usize].waves).sum();
         rows.push(cells(format!("all, waves of {name}"), sum.map(|sum| sum / waves.max(1) as f64)));
     }
-    Table::new(&heads, rows)
+    Table::new(heads, rows)
 }
 
 fn cells(name: String, cost: [f64; 3]) -> Vec<String> {

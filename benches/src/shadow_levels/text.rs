@@ -16,19 +16,8 @@ and without shadows by the same \
 samples; their noise, measured by their difference, is taken out of the squares. A history is of 16 frames \
 at rest.";
 
-const HEADS: [&str; 11] = [
-    "level",
-    "S, RMSE x 100",
-    "in penumbra",
-    "mean",
-    "radiance, RMSE / mean %",
-    "shade, ms",
-    "rays, ms",
-    "history, ms",
-    "filter, ms",
-    "sum, ms",
-    "million rays/s",
-];
+const HEADS: &str = "level | S, RMSE x 100 | in penumbra | mean | radiance, RMSE / mean % | shade, ms | rays, ms | \
+    history, ms | filter, ms | sum, ms | million rays/s";
 
 fn cells(result: &LevelResult) -> Vec<String> {
     let LevelResult { level, errors, milliseconds, rays_per_second } = result;
@@ -50,7 +39,7 @@ fn cells(result: &LevelResult) -> Vec<String> {
 
 impl SceneResult {
     fn table(&self) -> Table {
-        Table::new(&HEADS, self.levels.iter().map(cells))
+        Table::new(HEADS, self.levels.iter().map(cells))
     }
 
     /// What is seen, and how well it is known.

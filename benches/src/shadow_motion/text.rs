@@ -30,10 +30,10 @@ fn cells(film: &FilmErrors) -> Vec<String> {
 
 impl SceneFilms {
     fn table(&self) -> Table {
-        let heads =
-            ["motion, level", "S, RMSE x 100", "in penumbra", "uncovered", "worst frame", "lag, frames"];
+        let heads = "motion, level | S, RMSE x 100 | in penumbra | uncovered | worst frame | \
+            lag, frames";
         let order = Motion::ALL.iter().flat_map(|motion| Scheme::ALL.map(|scheme| (*motion, scheme)));
-        Table::new(&heads, order.filter_map(|(motion, scheme)| self.find(motion, scheme)).map(cells))
+        Table::new(heads, order.filter_map(|(motion, scheme)| self.find(motion, scheme)).map(cells))
     }
 }
 

@@ -14,7 +14,10 @@ use arealight_capi::{
 };
 use arealight_engine::host::{DescriptorPool, HostError};
 use arealight_engine::{SourceImage, SourceTexels};
-use arealight_tests::c_library::{CLibrary, DeviceMemory, NO_FRAME, NO_LIGHT, good, refused, set_layout};
+use arealight_tests::c_library::{
+    CLibrary, DeviceMemory, NO_FRAME, NO_LIGHT, c_image, good, refused, set_layout,
+};
+use arealight_tests::pass::image;
 use arealight_tests::prelude::*;
 use ash::vk::{self, Handle as _};
 use std::ffi::c_void;
@@ -210,11 +213,7 @@ impl<'a> CTextures<'a> {
     /// Replaces a layer by an image.
     fn update(&self, image: &Image) {
         let (set, _pool) = self.library.set(&self.needs.source_set);
-        let source = ArealightImage {
-            view: image.view().as_raw(),
-            layout: Usage::COMPUTE_READ.layout.as_raw().cast_unsigned(),
-            reserved: 0,
-        };
+        let source = c_image(image, Usage::COMPUTE_READ);
         // SAFETY: the set is new, and the image lives until the submission was waited for.
         good(unsafe { arealight_textures_write_source_set(self.raw, set.as_raw(), source) });
         let update = ArealightTextureUpdate {
@@ -273,11 +272,7 @@ impl Drop for CTextures<'_> {
 }
 
 fn source(engine: &TestEngine, texels: &[[u8; 4]]) -> Image {
-    let (format, usage) = (vk::Format::R8G8B8A8_UNORM, vk::ImageUsageFlags::SAMPLED);
-    let description = ImageDescription { name: "source", extent: SIZE, layers: 1, format, usage };
-    let image = engine.host().image(&description).unwrap();
-    image.upload(texels, Usage::COMPUTE_READ).unwrap();
-    image
+    image(engine, SIZE, vk::Format::R8G8B8A8_UNORM, vk::ImageUsageFlags::SAMPLED, texels)
 }
 
 #[test]

@@ -1,23 +1,21 @@
 //! Shadows of a host in C are the recorder's, to the last bit; its media are what is known of them.
 
 use arealight::Blockers;
-use arealight::plan::ShadowFilter;
 use arealight_capi::{
-    AREALIGHT_SHADOW_FILTER_GATHER, AREALIGHT_WHOLE_SIZE, ArealightBlockerArrays, ArealightBuffer,
-    ArealightFrame, ArealightImage, ArealightMediumFrame, ArealightMediumOptions, ArealightMediumResources,
-    ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult, ArealightSetLayout,
-    ArealightShadowFrame, ArealightShadowOptions, ArealightShadowPass, ArealightShadowResources,
-    arealight_blockers_create, arealight_blockers_destroy, arealight_blockers_read,
-    arealight_medium_pass_create, arealight_medium_pass_destroy, arealight_medium_pass_prepare,
-    arealight_medium_pass_record, arealight_medium_pass_set_layout, arealight_medium_pass_write_set,
-    arealight_pack_lights, arealight_pass_create, arealight_pass_destroy, arealight_pass_record,
-    arealight_pass_shadow_picks_size, arealight_pass_write_set, arealight_shadow_pass_create,
-    arealight_shadow_pass_destroy, arealight_shadow_pass_prepare, arealight_shadow_pass_record,
-    arealight_shadow_pass_set_layout, arealight_shadow_pass_write_set,
+    AREALIGHT_SHADOW_FILTER_GATHER, ArealightBlockerArrays, ArealightBuffer, ArealightFrame, ArealightImage,
+    ArealightMediumFrame, ArealightMediumOptions, ArealightMediumResources, ArealightPass,
+    ArealightPassOptions, ArealightResources, ArealightResult, ArealightSetLayout, ArealightShadowFrame,
+    ArealightShadowOptions, ArealightShadowPass, ArealightShadowResources, arealight_blockers_create,
+    arealight_blockers_destroy, arealight_blockers_read, arealight_medium_pass_create,
+    arealight_medium_pass_destroy, arealight_medium_pass_prepare, arealight_medium_pass_record,
+    arealight_medium_pass_set_layout, arealight_medium_pass_write_set, arealight_pack_lights,
+    arealight_pass_create, arealight_pass_destroy, arealight_pass_record, arealight_pass_shadow_picks_size,
+    arealight_pass_write_set, arealight_shadow_pass_create, arealight_shadow_pass_destroy,
+    arealight_shadow_pass_prepare, arealight_shadow_pass_record, arealight_shadow_pass_set_layout,
+    arealight_shadow_pass_write_set,
 };
-use arealight_engine::host::Buffer;
 use arealight_tests::c_library::{
-    CLibrary, DeviceMemory, NO_ARRAYS, NO_FRAME, c_lamp, good, refused, set_layout,
+    CLibrary, DeviceMemory, NO_ARRAYS, NO_FRAME, c_image, c_lamp, good, refused, set_layout, whole,
 };
 use arealight_tests::prelude::*;
 use arealight_tests::shadow_patch::{PatchPasses, SIDE, ShadowPatch, filled, stored};
@@ -69,16 +67,6 @@ struct CPasses<'a> {
 
 /// From clip space to places that the camera sees.
 const FROM_CLIP: [f32; 16] = glam::Mat4::IDENTITY.to_cols_array();
-
-/// An image as C has it.
-fn image(image: &Image, usage: Usage) -> ArealightImage {
-    ArealightImage { view: image.view().as_raw(), layout: usage.layout.as_raw().cast_unsigned(), reserved: 0 }
-}
-
-/// All of a buffer as C has it.
-fn whole(buffer: &Buffer) -> ArealightBuffer {
-    ArealightBuffer { buffer: buffer.handle().as_raw(), offset: 0, range: AREALIGHT_WHOLE_SIZE }
-}
 
 impl<'a> CPasses<'a> {
     fn new(engine: &'a TestEngine, library: &'a CLibrary<'a>, shadow_rays: u32) -> Self {
@@ -141,16 +129,16 @@ impl<'a> CPasses<'a> {
             lights: whole(&lights),
             light_vertices: whole(&vertices),
             planes: Plane::ALL.map(|plane| {
-                let image_of = |input| image(input, Usage::COMPUTE_READ);
+                let image_of = |input| c_image(input, Usage::COMPUTE_READ);
                 inputs.get(plane as usize).map_or_else(ArealightImage::default, image_of)
             }),
-            radiance: image(&radiance, Usage::COMPUTE_WRITE),
+            radiance: c_image(&radiance, Usage::COMPUTE_WRITE),
             shadow_picks: whole(&picks),
             ..ArealightResources::default()
         };
         let of_shadows = ArealightShadowResources {
-            shadow: image(&shadow, Usage::COMPUTE_WRITE),
-            radiance: image(&shadowed, Usage::COMPUTE_WRITE),
+            shadow: c_image(&shadow, Usage::COMPUTE_WRITE),
+            radiance: c_image(&shadowed, Usage::COMPUTE_WRITE),
             blocker_nodes: whole(&nodes),
             blocker_triangles: whole(&triangles),
             ..ArealightShadowResources::default()
@@ -237,7 +225,7 @@ impl CPasses<'_> {
             ImageDescription { name: "froxels", extent: [width, height], layers: 1, format, usage };
         let volume = host.volume(&description, depth).unwrap();
         let resources = ArealightMediumResources {
-            froxels: image(&volume, Usage::COMPUTE_WRITE),
+            froxels: c_image(&volume, Usage::COMPUTE_WRITE),
             medium: ArealightImage::default(),
             blocker_nodes: blockers.blocker_nodes,
             blocker_triangles: blockers.blocker_triangles,

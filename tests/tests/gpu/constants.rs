@@ -27,6 +27,11 @@ fn glsl_constants(source: &str, prefix: &str) -> BTreeMap<String, f64> {
     found
 }
 
+/// The constants of a type, by their names.
+macro_rules! of {
+    ($type:ty: $($name:ident)+) => { [$((stringify!($name), f64::from(<$type>::$name))),+] };
+}
+
 fn assert_constants(source: &str, prefix: &str, expected: &[(&str, f64)]) {
     let expected: BTreeMap<_, _> = expected.iter().map(|&(name, value)| (name.to_owned(), value)).collect();
     assert_eq!(glsl_constants(source, prefix), expected, "{prefix}*");
@@ -94,47 +99,17 @@ fn every_effect_is_asked_for_and_no_other() {
 fn flags_have_the_same_bits_in_glsl() {
     use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture, GpuTriangle};
     use gpu::{GpuLight, TextureLoadConstants as Load};
-    let flags = [
-        ("TWO_SIDED", GpuLight::TWO_SIDED.into()),
-        ("FLAT", GpuLight::FLAT.into()),
-        ("MESH", GpuLight::MESH.into()),
-        ("QUAD", GpuLight::QUAD.into()),
-        ("PROFILE", GpuLight::PROFILE.into()),
-        ("OPENING", GpuLight::OPENING.into()),
-        ("SHAPED", GpuLight::SHAPED.into()),
-    ];
+    let flags = of!(GpuLight: TWO_SIDED FLAT MESH QUAD PROFILE OPENING SHAPED);
     assert_constants(LIGHT_RECORDS_GLSL, "LIGHT_", &flags);
     assert_constants(LIGHT_RECORDS_GLSL, "NO_LIGHT_", &[("TEXTURE", GpuLight::NO_TEXTURE.into())]);
     assert_constants(FOOTPRINT_GLSL, "AREALIGHT_NO_", &[("IMAGE", GpuLight::NO_TEXTURE.into())]);
-    let material = [
-        ("DOUBLE_SIDED", GpuMaterial::DOUBLE_SIDED.into()),
-        ("ALPHA_MASK", GpuMaterial::ALPHA_MASK.into()),
-        ("ALPHA_BLEND", GpuMaterial::ALPHA_BLEND.into()),
-    ];
-    let triangle = [
-        ("LAMP", GpuTriangle::LAMP.into()),
-        ("TANGENTS", GpuTriangle::TANGENTS.into()),
-        ("MIRRORED", GpuTriangle::MIRRORED.into()),
-        ("COLORS", GpuTriangle::COLORS.into()),
-    ];
-    assert_constants(SCENE_GLSL, "TRIANGLE_", &triangle);
-    assert_constants(SCENE_GLSL, "MATERIAL_", &material);
+    assert_constants(LIGHT_RECORDS_GLSL, "SHAPE_", &of!(gpu::GpuShape: DISK SPHERE TUBE TWO_SIDED));
+    assert_constants(SCENE_GLSL, "TRIANGLE_", &of!(GpuTriangle: LAMP TANGENTS MIRRORED COLORS));
+    assert_constants(SCENE_GLSL, "MATERIAL_", &of!(GpuMaterial: DOUBLE_SIDED ALPHA_MASK ALPHA_BLEND));
     assert_constants(SCENE_GLSL, "NO_TEXTURE", &[("", GpuMaterial::NO_TEXTURE.into())]);
-    let texture = [
-        ("SRGB", GpuTexture::SRGB.into()),
-        ("CLAMP_U", GpuTexture::CLAMP_U.into()),
-        ("CLAMP_V", GpuTexture::CLAMP_V.into()),
-        ("MIRROR_U", GpuTexture::MIRROR_U.into()),
-        ("MIRROR_V", GpuTexture::MIRROR_V.into()),
-    ];
+    let texture = of!(GpuTexture: SRGB CLAMP_U CLAMP_V MIRROR_U MIRROR_V);
     assert_constants(SCENE_GLSL, "TEXTURE_", &texture);
-    let load = [
-        ("SRGB", Load::SRGB.into()),
-        ("CLAMP_U", Load::CLAMP_U.into()),
-        ("CLAMP_V", Load::CLAMP_V.into()),
-        ("MIRROR_U", Load::MIRROR_U.into()),
-        ("MIRROR_V", Load::MIRROR_V.into()),
-    ];
+    let load = of!(Load: SRGB CLAMP_U CLAMP_V MIRROR_U MIRROR_V);
     assert_constants(TEXTURE_LOAD_COMP, "LOAD_", &load);
 }
 
@@ -209,13 +184,6 @@ fn choices_have_the_same_numbers_in_glsl() {
     assert_constants(FOOTPRINT_GLSL, "AREALIGHT_FINEST_", &finest);
     assert_constants(TEXTURE_KERNEL_COMP, "FINEST_", &finest);
     assert_constants(IMAGE_LAYERS_GLSL, "IMAGE_", &[("LAYERS", arealight::pyramid::LAYERS.into())]);
-    let shapes = [
-        ("DISK", number(gpu::GpuShape::DISK)),
-        ("SPHERE", number(gpu::GpuShape::SPHERE)),
-        ("TUBE", number(gpu::GpuShape::TUBE)),
-        ("TWO_SIDED", number(gpu::GpuShape::TWO_SIDED)),
-    ];
-    assert_constants(LIGHT_RECORDS_GLSL, "SHAPE_", &shapes);
     let ends = [
         ("OPEN", number(TubeEnds::Open as u32)),
         ("FLAT", number(TubeEnds::Flat as u32)),

@@ -51,6 +51,18 @@ fn compile(folder: &Path) -> PathBuf {
     program
 }
 
+/// What the host draws with more arguments, under either kind of validation.
+fn drawn(more: &[&str]) -> Vec<[f32; 3]> {
+    let folder = tempfile::tempdir().unwrap();
+    let program = compile(folder.path());
+    let picture = folder.path().join("picture.pfm");
+    for validation in ["synchronization", "gpu-assisted"] {
+        let output = run(&program, &picture, validation, more);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    read_picture(&picture)
+}
+
 fn run(program: &Path, picture: &Path, validation: &str, more: &[&str]) -> Output {
     let mut command = Command::new(program);
     // Cargo has its own, where an earlier build may be
@@ -144,14 +156,7 @@ fn differing(a: &[[f32; 3]], b: &[[f32; 3]]) -> usize {
 #[test]
 fn cpp_draws_what_rust_draws_to_the_last_bit() {
     let Some(engine) = TestEngine::new() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let program = compile(folder.path());
-    let picture = folder.path().join("picture.pfm");
-    for validation in ["synchronization", "gpu-assisted"] {
-        let output = run(&program, &picture, validation, &[]);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    }
-    let (cpp, rust) = (read_picture(&picture), draw(&engine, &lights()));
+    let (cpp, rust) = (drawn(&[]), draw(&engine, &lights()));
     assert_eq!(differing(&cpp, &rust), 0);
 
     // The picture shows something, and a light that is a little brighter shows in it
@@ -166,14 +171,7 @@ fn cpp_draws_what_rust_draws_to_the_last_bit() {
 #[test]
 fn cpp_draws_the_same_with_tiles() {
     let Some(engine) = TestEngine::new() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let program = compile(folder.path());
-    let picture = folder.path().join("picture.pfm");
-    for validation in ["synchronization", "gpu-assisted"] {
-        let output = run(&program, &picture, validation, &["--tiles"]);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    }
-    let tiled = read_picture(&picture);
+    let tiled = drawn(&["--tiles"]);
     // Lights that are left out contribute nothing, which the quality level may round to 1e-6 of their
     // radiance: of all 16
     let is_same = |other: &[[f32; 3]]| {

@@ -2,52 +2,29 @@
 //! of a picture, and the set of a scene shows what the set of all does.
 
 use arealight::kernels::SHADE;
-use arealight::plan::{Output, ShadeOptions, shade_specialization};
-use arealight::{Effects, Footprint, FormFactor, Horizon, LightSummary, Quality, SpecularLobes};
-use arealight_engine::SceneRenderer;
-use arealight_scene::{Camera, Scene, SceneBuffers};
-use arealight_tests::TestEngine;
+use arealight::plan::shade_specialization;
 use arealight_tests::frame::{bits, scene};
-use glam::Vec3;
+use arealight_tests::prelude::*;
 
 const SIZE: [u32; 2] = [64, 36];
 
-/// A view of a scene, and what a set of effects shows of it.
-struct View<'a> {
-    engine: &'a TestEngine,
-    scene: &'a Scene,
-    buffers: SceneBuffers,
-    camera: Camera,
+/// The bits of a scene's picture, by the shade pass for these surfaces.
+fn shade(engine: &TestEngine, scene: &Scene, surfaces: Effects, quality: Quality) -> Vec<[u32; 4]> {
+    with_renderer(engine, scene, &scene.lights, SIZE, |renderer| {
+        renderer.shade(surfaces, quality).unwrap();
+        bits(renderer)
+    })
 }
 
-impl<'a> View<'a> {
-    fn new(engine: &'a TestEngine, scene: &'a Scene) -> Self {
-        let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera");
-        let buffers = SceneBuffers::new(scene, camera.position).expect("our own scenes fit");
-        Self { engine, scene, buffers, camera }
-    }
-
-    fn renderer(&self) -> SceneRenderer<'_> {
-        let constants = self.buffers.constants(&self.camera, SIZE, Vec3::ZERO);
-        SceneRenderer::new(self.engine, &self.buffers, &self.scene.lights, constants, SIZE).unwrap()
-    }
-
-    /// The picture's bits, by the shade pass for these surfaces.
-    fn shade(&self, surfaces: Effects, quality: Quality) -> Vec<[u32; 4]> {
-        let mut renderer = self.renderer();
-        renderer.shade(surfaces, quality).unwrap();
-        bits(&mut renderer)
-    }
-
-    /// The same by the kernel with the code of every one of the effects.
-    fn shade_by_all_of(&self, effects: Effects, quality: Quality) -> Vec<[u32; 4]> {
-        let mut renderer = self.renderer();
+/// The same by the kernel with the code of every one of the effects.
+fn shade_by_all_of(engine: &TestEngine, scene: &Scene, effects: Effects, quality: Quality) -> Vec<[u32; 4]> {
+    with_renderer(engine, scene, &scene.lights, SIZE, |renderer| {
         let options =
             ShadeOptions { surfaces: effects, quality, output: Output::Add, ..ShadeOptions::default() };
         let lights = LightSummary { effects, ..renderer.lights() };
         renderer.shade_by(&SHADE, &shade_specialization(options, lights)).unwrap();
-        bits(&mut renderer)
-    }
+        bits(renderer)
+    })
 }
 
 /// How many pixels differ in any bit, and the largest difference of a channel, over the brightest channel.
@@ -70,17 +47,18 @@ fn is_none(engine: &TestEngine, (pixels, largest): (usize, f32)) -> bool {
 fn an_effect_that_no_surface_needs_changes_no_bit() {
     let Some(engine) = TestEngine::new() else { return };
     let scene = scene("sweep.glb");
-    let view = View::new(&engine, &scene);
     let required = scene.effects();
     let plain = Quality::default();
-    let expected = view.shade(required, plain);
-    let (pixels, largest) =
-        difference(&expected, &view.shade(Effects::SURFACES - (Effects::MODEL - required), plain));
+    let expected = shade(&engine, &scene, required, plain);
+    let (pixels, largest) = difference(
+        &expected,
+        &shade(&engine, &scene, Effects::SURFACES - (Effects::MODEL - required), plain),
+    );
     assert!(is_none(&engine, (pixels, largest)), "{pixels} pixels, {largest:e} at most");
     // The twin: one that pixels use changes most of them
     let (pixels, _) = difference(
-        &view.shade(required, Quality::default()),
-        &view.shade(required - Effects::GLOSSY, Quality::default()),
+        &shade(&engine, &scene, required, Quality::default()),
+        &shade(&engine, &scene, required - Effects::GLOSSY, Quality::default()),
     );
     assert!(pixels > 1000, "{pixels}");
 }
@@ -89,7 +67,6 @@ fn an_effect_that_no_surface_needs_changes_no_bit() {
 fn code_that_no_light_needs_changes_no_bit() {
     let Some(engine) = TestEngine::new() else { return };
     let scene = scene("sweep.glb");
-    let view = View::new(&engine, &scene);
     let required = scene.effects();
     // Those of shapes have tests of their own, and pipelines that take long to make
     let unused = Effects::all() - Effects::SHAPES - Effects::MODEL - required;
@@ -107,8 +84,10 @@ fn code_that_no_light_needs_changes_no_bit() {
     sets.push((unused - Effects::POLYGON, dear));
     sets.push((unused - Effects::POLYGON, Quality { specular_lobes: SpecularLobes::HalfVectors, ..dear }));
     let wrong = sets.into_iter().filter_map(|(added, quality)| {
-        let (pixels, largest) =
-            difference(&view.shade(required, quality), &view.shade_by_all_of(required | added, quality));
+        let (pixels, largest) = difference(
+            &shade(&engine, &scene, required, quality),
+            &shade_by_all_of(&engine, &scene, required | added, quality),
+        );
         (!is_none(&engine, (pixels, largest)))
             .then(|| format!("{quality:?}, {added}: {pixels} pixels, {largest:e} at most"))
     });
@@ -120,12 +99,14 @@ fn code_that_no_light_needs_changes_no_bit() {
 fn code_of_every_polygon_effect_shows_what_the_required_one_does() {
     let Some(engine) = TestEngine::new() else { return };
     let scene = scene("room.glb");
-    let view = View::new(&engine, &scene);
     let required = scene.effects();
     // With shapes too: shape_frames.rs
     let all = Effects::all() - Effects::SHAPES - (Effects::MODEL - required);
     assert!(required != all && required.contains(Effects::POLYGON | Effects::TWO_SIDED), "{required}");
     let quality = Quality::default();
-    let (pixels, largest) = difference(&view.shade(required, quality), &view.shade_by_all_of(all, quality));
+    let (pixels, largest) = difference(
+        &shade(&engine, &scene, required, quality),
+        &shade_by_all_of(&engine, &scene, all, quality),
+    );
     assert!(is_none(&engine, (pixels, largest)), "{pixels} pixels, {largest:e} at most");
 }

@@ -1,19 +1,14 @@
 //! Points in a medium under lights of every kind: against the reference, the float64 twin, and what must be
 //! so.
 
-use arealight::{Light, LightShape, LightTexture, Quality, TexturePart, TubeEnds};
 use arealight_benches::pictures;
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{MediumCase, read_cases};
 use arealight_engine::MediumPoint;
 use arealight_oracle::phase::{MAX_ANISOTROPY, henyey_greenstein};
-use arealight_oracle::shading::{
-    RelativeLight, in_scattered, in_scattered_truth, shape_in_scattered, shape_seen_from,
-};
-use arealight_oracle::texture::Texture;
+use arealight_oracle::shading::{in_scattered, in_scattered_truth, shape_in_scattered, shape_seen_from};
 use arealight_tests::kernel::Function;
-use arealight_tests::{Comparison, Random, TestEngine};
-use glam::{DVec3, Vec3};
+use arealight_tests::prelude::*;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -276,7 +271,7 @@ fn images_are_seen_by_direction() {
     let images = [white, halves].map(Arc::new);
     pictures::load(&mut engine, &images, |_| TexturePart::default()).unwrap();
     let mut random = Random::new(73);
-    let uvs: Vec<_> = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(glam::DVec2::from).into();
+    let uvs: Vec<_> = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(DVec2::from).into();
     let (mut squares, mut mean) = (DVec3::ZERO, DVec3::ZERO);
     for _ in 0..200 {
         let towards = random.direction();

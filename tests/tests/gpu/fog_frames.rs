@@ -1,15 +1,10 @@
 //! A medium before pictures: froxels against Monte Carlo.
 
-use arealight::plan::{MediumOptions, Output, ShadeOptions};
-use arealight::{Light, LightShape, Profile, TubeEnds};
-use arealight_engine::host::{ImageDescription, Usage};
-use arealight_engine::{Fog, SceneRenderer};
-use arealight_scene::{Scene, SceneBuffers};
+use arealight::Profile;
+use arealight::plan::MediumOptions;
+use arealight_engine::Fog;
 use arealight_tests::frame::scene;
-use arealight_tests::{Random, TestEngine};
-use arealight_vk::Resource;
-use ash::vk;
-use glam::{DVec3, Vec3, Vec4};
+use arealight_tests::prelude::*;
 
 const SIZE: [u32; 2] = [64, 36];
 const FROXELS: [u32; 3] = [32, 18, 64];
@@ -35,12 +30,11 @@ fn seen_from(
 ) -> Vec<Vec4> {
     let mut camera = scene.camera(None, 16.0 / 9.0).unwrap();
     camera.position += ahead * camera.forward;
-    let buffers = SceneBuffers::new(scene, camera.position).unwrap();
-    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
-    let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, SIZE).unwrap();
-    renderer.shade_as(ShadeOptions { output: Output::Add, ..ShadeOptions::default() }).unwrap();
-    act(&mut renderer, &buffers);
-    renderer.radiance().unwrap()
+    with_view(engine, scene, &scene.lights, (&camera, SIZE), |renderer, buffers| {
+        renderer.shade_as(ShadeOptions { output: Output::Add, ..ShadeOptions::default() }).unwrap();
+        act(renderer, buffers);
+        renderer.radiance().unwrap()
+    })
 }
 
 /// Puts a fog before the picture.

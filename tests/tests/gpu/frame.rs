@@ -1,6 +1,5 @@
 //! A whole frame: visibility, shading and the reference, each against its own independent twin.
 
-use arealight_engine::Reference;
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::truth;
 use arealight_oracle::thin_film::ThinFilm;

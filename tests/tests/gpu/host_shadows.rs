@@ -2,10 +2,27 @@
 //! blocks a ray, and reads a set of theirs.
 
 use crate::shadows::{flat, options, surfaces, symmetric_lights};
-use arealight::plan::ShadowFilter;
+use arealight_engine::host::{Buffer, OwnSet};
 use arealight_tests::kernel::{shade_with_visibility, shadow_rays_with_bridge};
 use arealight_tests::prelude::*;
 use arealight_tests::shadow_patch::{PatchPasses, SIDE, ShadowPatch};
+
+/// Rays that ask a host by this macro of the examples, who reads a buffer, and a patch behind blockers.
+fn asking<'a>(
+    engine: &'a TestEngine,
+    macro_name: &str,
+    (number, buffer): (u32, &Buffer),
+    blockers: Vec<[Vec3; 3]>,
+) -> (PatchPasses<'a>, ShadowPatch, OwnSet) {
+    // SAFETY: The callers' buffer outlives the set.
+    let own = unsafe { engine.host().own_set(number, &[Resource::buffer(buffer.handle())]) }.unwrap();
+    let module = shadow_rays_with_bridge(macro_name);
+    let mut passes = PatchPasses::with_blocker(engine, options(), module, own.layout);
+    passes.blocker_set = Some(own.set);
+    let (_, material, view) = surfaces().remove(0);
+    let (_, light) = symmetric_lights().remove(0);
+    (passes, ShadowPatch { material, view, lights: vec![light], blockers }, own)
+}
 
 #[test]
 fn a_host_says_itself_what_blocks() {
@@ -13,14 +30,7 @@ fn a_host_says_itself_what_blocks() {
     let host = engine.host();
     let half = [[-100.0_f32, 0.0, 0.01, 0.0], [100.0, 100.0, 0.0, 0.0]];
     let rectangle = host.storage_buffer("rectangle", &half).unwrap();
-    // SAFETY: The buffer outlives the set.
-    let own = unsafe { host.own_set(0, &[Resource::buffer(rectangle.handle())]) }.unwrap();
-    let module = shadow_rays_with_bridge("AREALIGHT_HOST_BLOCKER");
-    let mut passes = PatchPasses::with_blocker(&engine, options(), module, own.layout);
-    passes.blocker_set = Some(own.set);
-    let (_, material, view) = surfaces().remove(0);
-    let (_, light) = symmetric_lights().remove(0);
-    let patch = ShadowPatch { material, view, lights: vec![light], blockers: Vec::new() };
+    let (passes, patch, _own) = asking(&engine, "AREALIGHT_HOST_BLOCKER", (0, &rectangle), vec![]);
     let found = patch.run(&passes).mean();
     assert!((found - 0.5).abs() < 4e-3, "{found}");
     // The twin: its rectangle elsewhere
@@ -39,14 +49,7 @@ fn a_host_says_what_is_there_of_triangles_that_are_cut_out() {
     let blockers = vec![[a, b, c], [a, c, d]];
     let half: Vec<[[f32; 2]; 3]> = blockers.iter().copied().map(coordinates).collect();
     let alpha = host.storage_buffer("coordinates", &half).unwrap();
-    // SAFETY: The buffer outlives the set.
-    let own = unsafe { host.own_set(1, &[Resource::buffer(alpha.handle())]) }.unwrap();
-    let module = shadow_rays_with_bridge("AREALIGHT_HOST_ALPHA");
-    let mut passes = PatchPasses::with_blocker(&engine, options(), module, own.layout);
-    passes.blocker_set = Some(own.set);
-    let (_, material, view) = surfaces().remove(0);
-    let (_, light) = symmetric_lights().remove(0);
-    let patch = ShadowPatch { material, view, lights: vec![light], blockers };
+    let (passes, patch, _own) = asking(&engine, "AREALIGHT_HOST_ALPHA", (1, &alpha), blockers);
     let found = patch.run(&passes).mean();
     assert!((found - 0.5).abs() < 4e-3, "{found}");
     // The twin: a pass that asks nobody

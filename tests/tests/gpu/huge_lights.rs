@@ -2,7 +2,6 @@
 //! point is on is told by the plane in the world, not by vertices, whose heights drown in their lengths.
 
 use arealight_benches::pictures;
-use arealight_engine::Reference;
 use arealight_oracle::stream::Stream;
 use arealight_tests::materials::polygon_twin;
 use arealight_tests::prelude::*;
@@ -223,19 +222,17 @@ fn sheets(u: DVec3, v: DVec3) -> Vec<Light> {
 /// How many pixels of a scene a light lights, by the shade pass and by the reference.
 fn lit_pixels(engine: &TestEngine, scene: &Scene, camera: &Camera, light: &Light) -> [usize; 2] {
     const SIZE: [u32; 2] = [48, 32];
-    let buffers = SceneBuffers::new(scene, camera.position).expect("buffers");
-    let constants = buffers.constants(camera, SIZE, Vec3::ZERO);
-    let lights = std::slice::from_ref(light);
     [false, true].map(|sampled| {
-        let mut renderer = SceneRenderer::new(engine, &buffers, lights, constants, SIZE).expect("a renderer");
-        if sampled {
-            let reference = Reference { samples: 2, coupled: false, ..Reference::default() };
-            renderer.reference(reference, |_| {}).expect("a reference");
-        } else {
-            renderer.shade(Effects::DIFFUSE, Quality::default()).expect("a frame");
-        }
-        let texels = renderer.radiance().expect("a picture");
-        texels.iter().filter(|texel| texel.truncate() != Vec3::ZERO).count()
+        with_view(engine, scene, std::slice::from_ref(light), (camera, SIZE), |renderer, _| {
+            if sampled {
+                let reference = Reference { samples: 2, coupled: false, ..Reference::default() };
+                renderer.reference(reference, |_| {}).expect("a reference");
+            } else {
+                renderer.shade(Effects::DIFFUSE, Quality::default()).expect("a frame");
+            }
+            let texels = renderer.radiance().expect("a picture");
+            texels.iter().filter(|texel| texel.truncate() != Vec3::ZERO).count()
+        })
     })
 }
 

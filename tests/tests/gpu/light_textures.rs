@@ -2,7 +2,6 @@
 //! recorded.
 
 use crate::recorder::field;
-use arealight::TexturePart;
 use arealight_engine::{Passes, TextureArray};
 use arealight_tests::prelude::*;
 use arealight_vk::{Error, LightTextures, TextureUpdate};

@@ -1,20 +1,12 @@
 //! Shadows of what is cut out or blended: by a texture, a factor and vertex colours, against Monte Carlo.
 
-use arealight::plan::{ShadowFilter, ShadowHistory};
-use arealight_engine::Reference;
 use arealight_scene::{Image, Texture, Wrap};
 use arealight_tests::prelude::*;
+use arealight_tests::scenes::square;
 use arealight_tool_kernels::gpu::GpuMaterial;
 use glam::Vec2;
 
 const SIZE: [u32; 2] = [48, 48];
-
-/// A square about a point on the axis, as two triangles that face up.
-fn square(height: f64, half: f64) -> [[DVec3; 3]; 2] {
-    let corner = |x: f64, z: f64| DVec3::new(x, height, z) * DVec3::new(half, 1.0, half);
-    let [a, b, c, d] = [corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)];
-    [[a, b, c], [a, c, d]]
-}
 
 /// A floor, and above it squares of a material of their own, whose coordinates run from 0 to `repeats`.
 fn scene(heights: &[f64], repeats: f32) -> Scene {

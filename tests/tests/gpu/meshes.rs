@@ -1,8 +1,8 @@
 //! Meshes of emitters, several faces that are one light: against their faces, against spheres that they are
 //! nearly, in frames and against the Monte Carlo reference.
 
-use arealight_engine::Reference;
 use arealight_tests::Path;
+use arealight_tests::frame::black;
 use arealight_tests::lobe::{Lobe, Seen};
 use arealight_tests::prelude::*;
 use std::collections::HashMap;
@@ -239,50 +239,32 @@ fn an_icosphere_is_a_sphere_to_the_error_of_its_faces() {
     assert!(outside > 32, "most send more than the sphere inside: {outside}");
 }
 
-/// A frame of lights over the surfaces of a scene.
-struct Frame<'a> {
-    engine: &'a TestEngine,
-    buffers: &'a SceneBuffers,
-    camera: &'a Camera,
-    lights: &'a [Light],
-}
-
-impl Frame<'_> {
-    fn renderer(&self) -> SceneRenderer<'_> {
-        let constants = self.buffers.constants(self.camera, SIZE, Vec3::ZERO);
-        SceneRenderer::new(self.engine, self.buffers, self.lights, constants, SIZE).expect("lights")
-    }
-
-    fn shade(&self) -> Vec<[f32; 4]> {
-        let mut renderer = self.renderer();
+/// What a scene's surfaces show of lights.
+fn shaded(engine: &TestEngine, scene: &Scene, lights: &[Light]) -> Vec<[f32; 4]> {
+    with_renderer(engine, scene, lights, SIZE, |renderer| {
         renderer.shade(Effects::DIFFUSE | Effects::GLOSSY, Quality::default()).expect("it shades");
         renderer.radiance().expect("radiance").into_iter().map(|texel| texel.to_array()).collect()
-    }
+    })
+}
 
-    /// The mean of the first channel by the reference.
-    fn reference(&self) -> f64 {
-        let mut renderer = self.renderer();
-        renderer
-            .reference(Reference { samples: 32, coupled: false, ..Reference::default() }, |_| ())
-            .expect("it samples");
+/// The mean of the first channel by the reference.
+fn sampled(engine: &TestEngine, scene: &Scene, lights: &[Light]) -> f64 {
+    with_renderer(engine, scene, lights, SIZE, |renderer| {
+        let reference = Reference { samples: 32, coupled: false, ..Reference::default() };
+        renderer.reference(reference, |_| ()).expect("it samples");
         let texels = renderer.radiance().expect("radiance");
         texels.iter().map(|texel| f64::from(texel.x)).sum::<f64>() / texels.len() as f64
-    }
+    })
 }
 
 #[test]
 fn a_mesh_is_one_light_of_a_frame() {
     let Some(engine) = TestEngine::new() else { return };
-    let mut scene = arealight_tests::frame::scene("sweep.glb");
     // The surfaces alone: the camera sees no light
-    scene.materials.iter_mut().for_each(|material| material.emission = Vec3::ZERO);
-    let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera");
-    let buffers = SceneBuffers::new(&scene, camera.position).expect("it fits");
+    let scene = black(&arealight_tests::frame::scene("sweep.glb"));
     let place = scene.lights[0].shape.center();
     let (mesh, apart) = ([cube(place, 0.4)], split(&cube(place, 0.4)));
-    let frame = |lights| Frame { engine: &engine, buffers: &buffers, camera: &camera, lights };
-    let (one, six) = (frame(&mesh).shade(), frame(&apart).shade());
-    let five = frame(&apart[1..]).shade();
+    let [one, six, five] = [&mesh[..], &apart, &apart[1..]].map(|lights| shaded(&engine, &scene, lights));
     let brightest = six.iter().map(|texel| texel[0]).fold(0.0, f32::max);
     let apart_by = |a: &[[f32; 4]], b: &[[f32; 4]]| {
         let differences = a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).abs());
@@ -293,8 +275,7 @@ fn a_mesh_is_one_light_of_a_frame() {
     assert!(apart_by(&one, &five) > 1e-2, "{}", apart_by(&one, &five));
 
     // The reference draws points of all faces, and meets all of them
-    let (one, six) = (frame(&mesh).reference(), frame(&apart).reference());
-    let five = frame(&apart[1..]).reference();
+    let [one, six, five] = [&mesh[..], &apart, &apart[1..]].map(|lights| sampled(&engine, &scene, lights));
     println!("reference: mesh {one}, faces {six}, five of them {five}");
     assert!((one / six - 1.0).abs() < 0.02, "{one}, {six}");
     assert!((one / five - 1.0).abs() > 0.05, "{one}, {five}");

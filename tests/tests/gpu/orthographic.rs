@@ -1,10 +1,9 @@
 //! Scenes through an orthographic camera: what it sees, and what it is shaded like, with shadows and without.
 //! The twin of each is a perspective camera that sees as much.
 
-use arealight::plan::{ShadowFilter, ShadowHistory};
-use arealight_engine::{EngineError, Reference};
+use arealight_engine::EngineError;
 use arealight_tests::prelude::*;
-use arealight_tests::scenes::box_of;
+use arealight_tests::scenes::{box_of, quad_light, square};
 use std::time::Duration;
 
 const SIZE: [u32; 2] = [48, 32];
@@ -13,14 +12,9 @@ const HALF_HEIGHT: f64 = 1.5;
 
 /// A floor with a box above it, and a lamp.
 fn scene(material: Material) -> Scene {
-    let corner = |x: f64, z: f64| DVec3::new(x, 0.0, z);
-    let (a, b, c, d) = (corner(-9.0, 9.0), corner(9.0, 9.0), corner(9.0, -9.0), corner(-9.0, -9.0));
     let block = box_of(DVec3::new(-0.5, 0.4, -0.4), DVec3::new(0.4, 0.7, 0.3));
-    let mut scene = scene_of(&[vec![[a, b, c], [a, c, d]], block].concat(), without_textures(material));
-    let outline = [(-0.8, -0.45), (0.8, -0.45), (0.8, 0.45), (-0.8, 0.45)];
-    let outline = outline.map(|(x, z)| DVec3::new(x, 2.0, z - 0.8)).to_vec();
-    let shape = LightShape::Polygon(outline);
-    scene.lights = vec![Light { radiance: Vec3::splat(5.0), shape, ..Light::default() }];
+    let mut scene = scene_of(&[&square(0.0, 9.0)[..], &block].concat(), without_textures(material));
+    scene.lights = vec![quad_light(DVec3::new(0.0, 2.0, -0.8))];
     scene
 }
 

@@ -1,6 +1,5 @@
 //! Frames in parts, as drivers with a watchdog need them: the picture is that of the whole frame, to the bit.
 
-use arealight::plan::{ShadowFilter, ShadowHistory};
 use arealight_tests::frame::{bits, scene};
 use arealight_tests::prelude::*;
 use arealight_vk::Error;
@@ -14,12 +13,11 @@ type Draw<'a> = &'a dyn Fn(&mut SceneRenderer<'_>, &SceneBuffers);
 /// The picture that is drawn in submissions of at most `most_pairs`.
 fn picture(engine: &TestEngine, scene: &Scene, most_pairs: u64, draw: Draw<'_>) -> Vec<[u32; 4]> {
     let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).unwrap();
-    let buffers = SceneBuffers::new(scene, camera.position).unwrap();
-    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
-    let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, SIZE).unwrap();
-    renderer.split(most_pairs);
-    draw(&mut renderer, &buffers);
-    bits(&mut renderer)
+    with_view(engine, scene, &scene.lights, (&camera, SIZE), |renderer, buffers| {
+        renderer.split(most_pairs);
+        draw(renderer, buffers);
+        bits(renderer)
+    })
 }
 
 /// Pairs of two rows of workgroups, and of less than one.

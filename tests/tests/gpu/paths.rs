@@ -1,7 +1,7 @@
 //! The paths through a quad's code that a device counts, in a scene where they are known.
 
+use arealight_benches::many_lights;
 use arealight_benches::model::{Counts, LobePaths, ModelError, Paths, count_scene};
-use arealight_tests::frame::scene;
 use arealight_tests::prelude::*;
 
 const SIZE: [u32; 2] = [64, 40];
@@ -11,18 +11,7 @@ const HALF: f64 = 4.0;
 
 /// A floor at the height 0 alone, seen from above under `lights`.
 fn floor(lights: Vec<Light>) -> Scene {
-    let mut scene = scene("sweep.glb");
-    let floor = scene.materials.iter().position(|material| material.name == "floor").expect("a floor");
-    scene.triangles.retain(|triangle| triangle.material as usize == floor);
-    let middle = scene.bounds.center();
-    for corner in scene.triangles.iter_mut().flat_map(|triangle| &mut triangle.positions) {
-        *corner = DVec3::new(corner.x - middle.x, 0.0, corner.z - middle.z).signum().with_y(0.0) * HALF;
-    }
-    scene.bounds = scene.triangles.iter().flat_map(|triangle| triangle.positions).collect();
-    let down = DVec3::new(0.0, -1.0, -1.0);
-    scene.cameras = vec![Camera::framing("from above", scene.bounds, down, DVec3::Y, 1.6)];
-    scene.lights = lights;
-    scene
+    Scene { lights, ..many_lights::floor(0.9, 2.0 * HALF, 1.6) }
 }
 
 /// A light with the corners center ± u ± v, whose front is to the side of u x v.

@@ -1,10 +1,8 @@
 //! The grain of shadows: no pattern that an eye finds is left by a mean over pixels.
 
 use crate::shadows::{flat, options, surfaces};
-use arealight::plan::{ShadeOptions, ShadowFilter};
-use arealight_tests::TestEngine;
+use arealight_tests::prelude::*;
 use arealight_tests::shadow_patch::{PatchPasses, SIDE, ShadowPatch};
-use glam::Vec3;
 use std::f64::consts::TAU;
 
 const SIZE: usize = SIDE as usize;

@@ -1,33 +1,16 @@
 //! Shadows over frames: a still picture loses its noise, a moved camera finds its pixels again, and what
 //! changes is not dragged along.
 
-use arealight::plan::{ShadeOptions, ShadowFilter, ShadowHistory};
-use arealight::{Light, LightShape};
-use arealight_engine::{SceneRenderer, ShadowedView};
-use arealight_scene::{Camera, Scene, SceneBuffers};
-use arealight_tests::TestEngine;
-use arealight_tests::scenes::{box_of, lambert, scene_of, without_textures};
-use glam::{DVec3, Vec3};
+use arealight::plan::{ShadowFilter, ShadowHistory};
+use arealight_engine::ShadowedView;
+use arealight_tests::prelude::*;
+use arealight_tests::scenes::{box_of, quad_light, square};
 
 const SIZE: [u32; 2] = [96, 72];
 
 fn scene() -> Scene {
-    let corner = |x: f64, z: f64| DVec3::new(x, 0.0, z);
-    let (a, b, c, d) = (corner(-3.0, 3.0), corner(3.0, 3.0), corner(3.0, -3.0), corner(-3.0, -3.0));
-    let mut triangles = vec![[a, b, c], [a, c, d]];
-    triangles.extend(box_of(DVec3::new(-0.5, 0.5, -0.4), DVec3::new(0.4, 0.8, 0.3)));
-    scene_of(&triangles, without_textures(lambert(0.8)))
-}
-
-/// A quad that faces down.
-fn light() -> Light {
-    let corner = |x: f64, z: f64| DVec3::new(x, 2.0, z);
-    let outline = [(-0.8, -0.45), (0.8, -0.45), (0.8, 0.45), (-0.8, 0.45)];
-    Light {
-        radiance: Vec3::splat(5.0),
-        shape: LightShape::Polygon(outline.iter().map(|&(x, z)| corner(x, z)).collect()),
-        ..Light::default()
-    }
+    let block = box_of(DVec3::new(-0.5, 0.5, -0.4), DVec3::new(0.4, 0.8, 0.3));
+    scene_of(&[&square(0.0, 3.0)[..], &block].concat(), without_textures(lambert(0.8)))
 }
 
 /// A camera on an orbit, at an angle in degrees.
@@ -50,7 +33,8 @@ impl<'a> Film<'a> {
         let scene = scene();
         let buffers = SceneBuffers::new(&scene, DVec3::ZERO).unwrap();
         let constants = buffers.constants(&camera(0.0), SIZE, Vec3::ZERO);
-        let renderer = SceneRenderer::new(engine, &buffers, &[light()], constants, SIZE).unwrap();
+        let renderer =
+            SceneRenderer::new(engine, &buffers, &[quad_light(DVec3::Y * 2.0)], constants, SIZE).unwrap();
         let options = ShadeOptions { shadow_rays: rays, ..ShadeOptions::default() };
         let view = renderer.shadowed(&buffers, options, (ShadowFilter::Off, history)).unwrap();
         Self { buffers, renderer, view }

@@ -1,15 +1,9 @@
 //! What a host may get wrong about shadows: each is an error that names the field, and nothing is recorded.
 
 use crate::recorder::field;
-use arealight::Plane;
-use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
-use arealight_tests::TestEngine;
-use arealight_tests::frame::{scene, with_renderer};
-use arealight_vk::{
-    BlockerResources, Error, Resource, ShadePass, ShadeResources, ShadowOptions, ShadowPass, ShadowPassInfo,
-    ShadowResources,
-};
-use ash::vk;
+use arealight_tests::frame::scene;
+use arealight_tests::prelude::*;
+use arealight_vk::{BlockerResources, Error, ShadowOptions, ShadowPass, ShadowPassInfo, ShadowResources};
 
 fn with_rays(shadow_rays: u32) -> ShadeOptions {
     ShadeOptions { shadow_rays, ..ShadeOptions::default() }

@@ -1,16 +1,13 @@
 //! Shadow rays drawn by the GLSL library, for the reference's shading points behind triangles: their mean
 //! visibility is the exact one's.
 
-use arealight::{LightTable, Quality};
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{SupportedCase, read_cases};
 use arealight_oracle::shading::ltc_on;
 use arealight_oracle::visibility::is_hidden;
-use arealight_tests::TestEngine;
 use arealight_tests::kernel::SHADOW_RAYS;
+use arealight_tests::prelude::*;
 use arealight_tool_kernels::light_sampling::triangles_of;
-use arealight_vk::Resource;
-use glam::DVec3;
 use std::collections::HashMap;
 
 const CASES: &str = include_str!("../../data/reference/shadows.json");

@@ -1,12 +1,7 @@
 //! Shadows of scenes from a micrometre to ten kilometres are alike, by rays and by Monte Carlo.
 
-use arealight::plan::{ShadeOptions, ShadowFilter, ShadowHistory};
-use arealight::{Effects, Light, LightShape};
-use arealight_engine::{Reference, SceneRenderer};
-use arealight_scene::{Camera, SceneBuffers};
-use arealight_tests::TestEngine;
-use arealight_tests::scenes::{box_of, lambert, scene_of, without_textures};
-use glam::{DQuat, DVec3, Vec3};
+use arealight_tests::prelude::*;
+use arealight_tests::scenes::{box_of, quad_light, square};
 
 const SIZE: [u32; 2] = [96, 72];
 
@@ -23,16 +18,13 @@ fn picture(engine: &TestEngine, scale: f64, from_camera: bool, method: Method) -
     let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.2);
     let place = |p: DVec3| turn * p * scale;
     let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
-    let [a, b, c, d] =
-        [corner(-3.0, 0.0, 3.0), corner(3.0, 0.0, 3.0), corner(3.0, 0.0, -3.0), corner(-3.0, 0.0, -3.0)];
-    let mut triangles = vec![[a, b, c], [a, c, d]];
+    let mut triangles = square(0.0, 3.0).to_vec();
     triangles.extend(box_of(corner(-0.5, 0.5, -0.4), corner(0.4, 0.8, 0.3)));
     triangles.extend(box_of(corner(0.8, 0.0, -0.2), corner(1.1, 0.5, 0.2)));
     let triangles: Vec<_> = triangles.into_iter().map(|t| t.map(place)).collect();
     let scene = scene_of(&triangles, without_textures(lambert(0.8)));
-    let outline = [(-0.8, -0.45), (0.8, -0.45), (0.8, 0.45), (-0.8, 0.45)];
-    let shape = LightShape::Polygon(outline.iter().map(|&(x, z)| place(corner(x, 2.0, z))).collect());
-    let light = Light { radiance: Vec3::splat(5.0), shape, ..Light::default() };
+    let mut light = quad_light(DVec3::Y * 2.0);
+    light.shape.vertices_mut().iter_mut().for_each(|vertex| *vertex = place(*vertex));
     let bounds = [DVec3::splat(-scale), DVec3::splat(scale)].into_iter().collect();
     let camera = Camera::framing("", bounds, turn * corner(-0.2, -1.4, -1.0), turn * DVec3::Y, 4.0 / 3.0);
     let origin = if from_camera { camera.position } else { DVec3::ZERO };

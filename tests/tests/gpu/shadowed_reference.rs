@@ -1,26 +1,18 @@
 //! The Monte Carlo reference with shadows, against the oracle's exact visibility.
 
-use arealight::{Light, LightShape, Plane, TubeEnds};
-use arealight_engine::host::Usage;
-use arealight_engine::{Reference, SceneRenderer};
 use arealight_oracle::cubature::Settings;
-use arealight_oracle::material::Material;
-use arealight_oracle::shading::{RelativeLight, truth};
+use arealight_oracle::shading::truth;
 use arealight_oracle::visibility::visible_parts;
-use arealight_scene::{Camera, Scene, SceneBuffers};
-use arealight_tests::TestEngine;
-use arealight_tests::scenes::{box_of, lambert, scene_of, without_textures};
-use glam::{DVec3, Vec3};
+use arealight_tests::prelude::*;
+use arealight_tests::scenes::{box_of, quad_light, square};
 
 const SIZE: [u32; 2] = [32, 24];
 
 type Triangle = [DVec3; 3];
 
-/// A floor at a height, as two triangles that face up.
+/// A floor at a height.
 fn floor(height: f64) -> Vec<Triangle> {
-    let corner = |x: f64, z: f64| DVec3::new(x, height, z);
-    let (a, b, c, d) = (corner(-3.0, 3.0), corner(3.0, 3.0), corner(3.0, -3.0), corner(-3.0, -3.0));
-    vec![[a, b, c], [a, c, d]]
+    square(height, 3.0).to_vec()
 }
 
 /// A box above the floor.
@@ -32,15 +24,9 @@ fn light(shape: LightShape) -> Light {
     Light { radiance: Vec3::splat(5.0), shape, ..Light::default() }
 }
 
-/// A quad of 1.6 by 0.9 at a height, which faces down.
+/// A quad at a height.
 fn quad(height: f64) -> Light {
-    let corner = |x: f64, z: f64| DVec3::new(x, height, z);
-    light(LightShape::Polygon(vec![
-        corner(-0.8, -0.45),
-        corner(0.8, -0.45),
-        corner(0.8, 0.45),
-        corner(-0.8, 0.45),
-    ]))
+    quad_light(DVec3::Y * height)
 }
 
 /// A metal of low roughness: what the BRDF's samples are for.
@@ -79,9 +65,8 @@ impl View {
             .reference(Reference { samples, seed: 5, shadows, coupled: false }, |_| {})
             .expect("it samples");
         let radiance = renderer.radiance().expect("a picture");
-        let download = |image: &arealight_engine::host::Image| -> Vec<[f32; 4]> {
-            image.download(Usage::COMPUTE_READ).expect("a picture")
-        };
+        let download =
+            |image: &Image| -> Vec<[f32; 4]> { image.download(Usage::COMPUTE_READ).expect("a picture") };
         let (positions, normals) =
             (download(&renderer.g_buffer()[Plane::Position]), download(&renderer.g_buffer()[Plane::Normal]));
         let vector = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z).as_dvec3();
@@ -154,8 +139,7 @@ fn a_surface_does_not_block_its_own_light() {
     // Whole pictures, alike to the bit where nothing but the floor is there; also far from the origin, and
     // near zero
     for height in [0.0, 0.04, -1.0, 1000.0] {
-        let floor: Vec<Triangle> =
-            floor(0.0).iter().map(|t| t.map(|vertex| vertex + DVec3::Y * height)).collect();
+        let floor = floor(height);
         for origin in [None, Some(DVec3::ZERO)] {
             let mut view = View::new(&floor, lambert(0.8));
             view.camera.position.y += height;

@@ -1,14 +1,10 @@
 //! The shade pass and the shadow pass, after one another: what arrives of lights of every kind, from surfaces
 //! of every kind.
 
-use arealight::plan::{ShadeOptions, ShadowFilter};
-use arealight::{Effects, Horizon, Light, LightShape, Quality, SpecularLobes, TubeEnds};
-use arealight_oracle::material::Material;
-use arealight_oracle::shading::{RelativeLight, ltc_on};
+use arealight_oracle::shading::ltc_on;
 use arealight_oracle::visibility::visible_parts;
-use arealight_tests::TestEngine;
+use arealight_tests::prelude::*;
 use arealight_tests::shadow_patch::{PatchPasses, PatchShadows, ShadowPatch};
-use glam::{DVec2, DVec3, Vec3};
 
 const RAYS: u32 = 4;
 
@@ -147,7 +143,7 @@ fn half_of_every_symmetric_light_arrives_where_half_of_it_is_hidden() {
 
 /// What a patch reflects of a quad by the oracle: of its visible parts, and of all of it.
 fn exact(light: &Light, patch: &ShadowPatch) -> [DVec3; 2] {
-    let table = arealight::LightTable::ggx();
+    let table = LightTable::ggx();
     let whole = RelativeLight::new(light, DVec3::ZERO);
     let blockers: Vec<_> = patch.blockers.iter().map(|t| t.map(Vec3::as_dvec3)).collect();
     let surface = patch.material.surface();

@@ -1,7 +1,6 @@
 //! Disks, spheres and tubes in the shade pass: pixels of a G-buffer against the float64 oracle.
 
 use arealight_benches::pictures;
-use arealight_engine::Reference;
 use arealight_oracle::shading::{shape_ltc_on, shape_seen_from};
 use arealight_tests::pass::{LightBuffers, planes, radiance, reads, run, store, stored_in};
 use arealight_tests::prelude::*;
@@ -30,8 +29,6 @@ fn pixels() -> Vec<Pixel> {
             roughness: random.between(0.4, 1.0) as f32,
             dielectric_f0: Vec3::splat(0.04),
             dielectric_f90: 1.0,
-            coat: 0.0,
-            coat_roughness: 0.0,
             ..Material::default()
         },
     };
@@ -191,8 +188,8 @@ fn effects_that_no_shape_needs_change_nothing() {
 
 /// A floor of two triangles at z = 0, of Lambert's lobe alone or of the GGX lobe alone.
 fn floor(glossy: bool) -> Scene {
-    let corner = |x: f64, y: f64| DVec3::new(x, y, 0.0);
-    let (a, b, c, d) = (corner(-2.0, -2.0), corner(2.0, -2.0), corner(2.0, 2.0), corner(-2.0, 2.0));
+    let [a, b, c, d] =
+        [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
     let material = Material {
         base_color: Vec3::splat(0.75),
         metalness: if glossy { 1.0 } else { 0.0 },

@@ -4,6 +4,7 @@
 use arealight_cases::hard::ellipse::{FAMILIES, Family, rounded};
 use arealight_oracle::ellipse::{Ellipse, form_factor, vector_form_factor};
 use arealight_oracle::polygon;
+use arealight_tests::Numbers;
 use arealight_tests::prelude::*;
 use arealight_tests::shapes::{ShapeArguments, ShapeFunction, ellipse_arguments};
 
@@ -267,34 +268,14 @@ fn in_contact_it_is_all_there_is(engine: &TestEngine) {
     assert!(twin > 300, "{twin} noticed");
 }
 
-/// How wild the numbers of a fuzzed case are.
-fn wild(random: &mut Random, kind: u32, scale: f64) -> f32 {
-    const SPECIAL: [f32; 10] =
-        [0.0, -0.0, 1.0, -1.0, f32::MIN_POSITIVE, 1e-45, f32::MAX, f32::MIN, f32::INFINITY, f32::NAN];
-    match kind {
-        0 => f32::from_bits(random.bits()),
-        1 if random.bits().is_multiple_of(8) => f32::from_bits(random.bits()),
-        1 => random.between(-1.0, 1.0) as f32,
-        2 => (random.between(-1.0, 1.0) * scale) as f32,
-        3 => (random.between(-4.0, 4.0).round() * scale) as f32,
-        _ => SPECIAL[random.bits() as usize % SPECIAL.len()],
-    }
-}
-
 #[test]
 fn any_bits_give_a_form_factor() {
     use ShapeFunction::{Ellipse, Silhouette, Sphere};
     let Some(engine) = TestEngine::new() else { return };
     let mut random = Random::new(86);
     let mut case = || -> ShapeArguments {
-        let kinds = [random.bits() % 5, random.bits() % 5];
-        let scales = [0; 2].map(|_| random.between(-149.0, 128.0).exp2());
-        let mut arguments = [[0.0; 4]; 4];
-        for (row, arguments) in arguments.iter_mut().enumerate() {
-            let which = usize::from(row > 0);
-            *arguments = [0; 4].map(|_| wild(&mut random, kinds[which], scales[which]));
-        }
-        arguments
+        let [center, others] = [0; 2].map(|_| Numbers::choose(&mut random));
+        [center, others, others, others].map(|numbers| numbers.vector(&mut random))
     };
     let mut arguments: Vec<_> = (0..100_000).map(|_| case()).collect();
     // Hard cases of ordinary size, and those with one bad number each

@@ -37,8 +37,6 @@ fn material(roughness: f32) -> Material {
         roughness,
         dielectric_f0: Vec3::splat(0.04),
         dielectric_f90: 1.0,
-        coat: 0.0,
-        coat_roughness: 0.0,
         ..Material::default()
     }
 }
@@ -104,21 +102,9 @@ impl<'a> Sweep<'a> {
                 diffuse_albedo: surface.diffuse_albedo.as_vec3().to_array(),
                 light: index as u32,
                 f0: surface.f0.as_vec3().to_array(),
-                coat_weight: 0.0,
-                coat_normal: [0.0; 3],
-                coat_roughness: 0.0,
-                sheen_color: [0.0; 3],
-                sheen_roughness: 0.0,
-                interface_f0: 0.0,
-                interface_f90: 0.0,
-                diffuse_roughness: 0.0,
-                reserved: 0.0,
-                tangent: [0.0; 3],
                 tangent_roughness: material.roughness,
-                film_weight: 0.0,
                 film_ior: 1.0,
-                film_thickness: 0.0,
-                reserved1: 0.0,
+                ..bytemuck::Zeroable::zeroed()
             });
         }
         let planes = planes(engine, SIZE, &|plane, [x, y]| {

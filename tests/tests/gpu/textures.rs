@@ -15,7 +15,6 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
             p0: [left, -9.0, -1.0],
             p1: [left + step, -9.0, -1.0],
             p2: [left + 0.5 * step, 9.0, -1.0],
-            material: 0,
             n0: up,
             n1: up,
             n2: up,
@@ -25,13 +24,10 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
             v0: v,
             v1: v,
             v2: v,
-            flags: 0,
-            tangent0: 0,
-            tangent1: 0,
-            tangent2: 0,
             color0: u32::MAX,
             color1: u32::MAX,
             color2: u32::MAX,
+            ..bytemuck::Zeroable::zeroed()
         }
     };
     SceneBuffers {
@@ -61,16 +57,10 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
 /// What sees the triangles of [`scene`], whose G-buffer is filled.
 fn renderer<'a>(engine: &'a TestEngine, scene: &SceneBuffers) -> SceneRenderer<'a> {
     let camera = VisibilityConstants {
-        camera: [0.0; 3],
-        orthographic: 0,
         right: [1.0, 0.0, 0.0],
-        reserved1: 0,
         up: [0.0, 1.0, 0.0],
-        reserved2: 0,
         forward: [0.0, 0.0, -1.0],
-        reserved3: 0,
-        background: [0.0; 3],
-        reserved4: 0,
+        ..bytemuck::Zeroable::zeroed()
     };
     let mut renderer =
         SceneRenderer::new(engine, scene, &[], camera, [scene.triangles.len() as u32, 1]).unwrap();

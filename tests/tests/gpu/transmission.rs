@@ -1,8 +1,7 @@
 //! Light that thin surfaces let through: a pass over the other side of a G-buffer, against eval, against
 //! none, by tiles, with shadows, and against Monte Carlo.
 
-use arealight::plan::{ShadowFilter, ShadowHistory};
-use arealight_engine::{EngineError, Reference};
+use arealight_engine::EngineError;
 use arealight_oracle::material::Interface;
 use arealight_tests::frame::scene;
 use arealight_tests::prelude::*;
@@ -35,12 +34,11 @@ fn reflected(
     shade: impl FnOnce(&mut SceneRenderer<'_>, &SceneBuffers) -> Result<(), EngineError>,
 ) -> Vec<Vec3> {
     let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera");
-    let buffers = SceneBuffers::new(scene, camera.position).unwrap();
-    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
-    let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, SIZE).unwrap();
-    let emitted = renderer.radiance().unwrap();
-    shade(&mut renderer, &buffers).unwrap();
-    let shaded = renderer.radiance().unwrap();
+    let (emitted, shaded) = with_view(engine, scene, &scene.lights, (&camera, SIZE), |renderer, buffers| {
+        let emitted = renderer.radiance().unwrap();
+        shade(renderer, buffers).unwrap();
+        (emitted, renderer.radiance().unwrap())
+    });
     shaded.iter().zip(&emitted).map(|(shaded, emitted)| (*shaded - *emitted).truncate()).collect()
 }
 

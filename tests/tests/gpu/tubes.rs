@@ -3,6 +3,7 @@
 use arealight_oracle::polygon;
 use arealight_oracle::sphere::{self, Sphere};
 use arealight_oracle::tube::{Ends, Tube, form_factor, transformed_form_factor};
+use arealight_tests::Numbers;
 use arealight_tests::prelude::*;
 use arealight_tests::shapes::tube_arguments;
 use glam::Mat3;
@@ -394,20 +395,8 @@ fn any_bits_give_a_form_factor() {
     let mut random = Random::new(94);
     let mut arguments = Vec::new();
     for _ in 0..50_000 {
-        let scales = [0; 2].map(|_| random.between(-149.0, 128.0).exp2());
-        let kinds = [random.bits() % 4, random.bits() % 4];
-        let mut given = [[0.0_f32; 4]; 4];
-        for (row, given) in given.iter_mut().enumerate() {
-            let (kind, scale) = (kinds[row / 2], scales[row / 2]);
-            *given = [0; 4].map(|_| match kind {
-                0 => f32::from_bits(random.bits()),
-                1 if random.bits().is_multiple_of(8) => f32::from_bits(random.bits()),
-                1 => random.between(-1.0, 1.0) as f32,
-                2 => (random.between(-1.0, 1.0) * scale) as f32,
-                _ => (random.between(-3.0, 3.0).round() * scale) as f32,
-            });
-        }
-        arguments.push(given);
+        let [tube, lobe] = [0; 2].map(|_| Numbers::choose(&mut random));
+        arguments.push([tube, tube, lobe, lobe].map(|numbers| numbers.vector(&mut random)));
     }
     // Each with every kind of end
     let ends = [0, 1, 2].map(|kind| vec![ENDS[kind]; arguments.len()]).concat();

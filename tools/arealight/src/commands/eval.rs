@@ -257,52 +257,40 @@ fn answer_batch(
             let shapes = gpu::eval_alike::answer(&shapes, quality, engine, &arguments.cases)?;
             (polygons, shapes, gpu::eval_alike::answer(&media, quality, engine, &arguments.cases)?)
         }
-        Method::Oracle => {
+        Method::Oracle | Method::Truth => {
+            // Integrals of the table's lobes are exact, those of the true BRDF have an error
+            let settings = (arguments.on == Method::Truth).then(Settings::default);
+            let exact = |radiance| Truth { radiance, error: DVec3::ZERO, evaluations: 0 };
             let polygons = answer_in_parallel(&polygons, |case| {
                 let SupportedCase { name, surface, normal, view, light, .. } = case;
-                Answer::new(name, ltc_on(quality, table, surface, *normal, *view, light))
+                let found = match &settings {
+                    Some(settings) => truth(surface, *normal, *view, light, settings),
+                    None => exact(ltc_on(quality, table, surface, *normal, *view, light)),
+                };
+                answer_by(name, Some(found))
             });
             let shapes = answer_in_parallel(&shapes, |case| {
                 let ShapeCase { name, surface, normal, view, light, .. } = case;
-                let radiance = match textured(case) {
-                    Some(light) => Some(ltc_on(quality, table, surface, *normal, *view, &light)),
-                    None => shape_ltc_on(quality, table, surface, *normal, *view, light),
+                let found = match (textured(case), &settings) {
+                    (Some(light), Some(settings)) => Some(truth(surface, *normal, *view, &light, settings)),
+                    (Some(light), None) => {
+                        Some(exact(ltc_on(quality, table, surface, *normal, *view, &light)))
+                    }
+                    (None, Some(settings)) => shape_truth(surface, *normal, *view, light, settings),
+                    (None, None) => shape_ltc_on(quality, table, surface, *normal, *view, light).map(exact),
                 };
-                radiance.map_or_else(|| no_shape(name), |radiance| Answer::new(name, radiance))
+                answer_by(name, found)
             });
             let media = answer_in_parallel(&media, |case| {
-                let MediumCase { name, anisotropy, view, light, .. } = case;
-                let radiance = match relative(case) {
-                    Ok(light) => Some(in_scattered(*anisotropy, *view, &light)),
-                    Err(None) => shape_in_scattered(*anisotropy, *view, light),
-                    Err(Some(reason)) => return Answer::none(name, reason),
+                let MediumCase { name, anisotropy: g, view, light, .. } = case;
+                let found = match (relative(case), &settings) {
+                    (Ok(light), Some(settings)) => Some(in_scattered_truth(*g, *view, &light, settings)),
+                    (Ok(light), None) => Some(exact(in_scattered(*g, *view, &light))),
+                    (Err(None), Some(settings)) => shape_in_scattered_truth(*g, *view, light, settings),
+                    (Err(None), None) => shape_in_scattered(*g, *view, light).map(exact),
+                    (Err(Some(reason)), _) => return Answer::none(name, reason),
                 };
-                radiance.map_or_else(|| no_shape(name), |radiance| Answer::new(name, radiance))
-            });
-            (polygons, shapes, media)
-        }
-        Method::Truth => {
-            let settings = Settings::default();
-            let polygons = answer_in_parallel(&polygons, |case| {
-                let SupportedCase { name, surface, normal, view, light, .. } = case;
-                answer_by_cubature(name, truth(surface, *normal, *view, light, &settings))
-            });
-            let shapes = answer_in_parallel(&shapes, |case| {
-                let ShapeCase { name, surface, normal, view, light, .. } = case;
-                let found = match textured(case) {
-                    Some(light) => Some(truth(surface, *normal, *view, &light, &settings)),
-                    None => shape_truth(surface, *normal, *view, light, &settings),
-                };
-                found.map_or_else(|| no_shape(name), |found| answer_by_cubature(name, found))
-            });
-            let media = answer_in_parallel(&media, |case| {
-                let MediumCase { name, anisotropy, view, light, .. } = case;
-                let found = match relative(case) {
-                    Ok(light) => Some(in_scattered_truth(*anisotropy, *view, &light, &settings)),
-                    Err(None) => shape_in_scattered_truth(*anisotropy, *view, light, &settings),
-                    Err(Some(reason)) => return Answer::none(name, reason),
-                };
-                found.map_or_else(|| no_shape(name), |found| answer_by_cubature(name, found))
+                answer_by(name, found)
             });
             (polygons, shapes, media)
         }
@@ -321,11 +309,6 @@ fn answer_batch(
         answer.unwrap_or_else(|| Answer::none(&case.name, "no answer was given"))
     };
     Ok(cases.iter().zip(&sorted).map(answer).collect())
-}
-
-/// The answer to a case whose light is a polygon after all.
-fn no_shape(name: &str) -> Answer {
-    Answer::none(name, "the light is no disk, sphere or tube")
 }
 
 /// The light of a textured case, as the polygon that stands for it.
@@ -350,9 +333,11 @@ fn relative(case: &MediumCase) -> Result<RelativeLight, Option<String>> {
 /// the evaluations ran out.
 const UNKNOWN: f64 = 1e-4;
 
-fn answer_by_cubature(name: &str, truth: Truth) -> Answer {
+/// The answer to a case; none was found of one whose light is a polygon after all.
+fn answer_by(name: &str, truth: Option<Truth>) -> Answer {
+    let Some(truth) = truth else { return Answer::none(name, "the light is no disk, sphere or tube") };
     let error = truth.error.max_element();
-    if error > UNKNOWN * truth.radiance.max_element() {
+    if error > UNKNOWN * truth.radiance.max_element().max(0.0) {
         let reason = format!("the cubature did not converge: {} give or take {error}", truth.radiance);
         return Answer::none(name, reason);
     }

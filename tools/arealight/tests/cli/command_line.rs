@@ -1,6 +1,6 @@
 //! The command line as a user meets it: exit codes, messages, files.
 
-use crate::common::run;
+use crate::common::{device, run};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -27,12 +27,6 @@ fn write(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
     let path = folder.join(name);
     std::fs::write(&path, bytes).expect("the test folder can be written");
     path
-}
-
-/// Whether there is a device; without one, the test is skipped unless one is required. Counted like the other
-/// tests that need a device.
-fn device() -> bool {
-    arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_some()
 }
 
 #[test]
@@ -145,9 +139,7 @@ fn bad_pictures_are_exit_code_3_and_named() {
 #[test]
 fn inspect_draws_the_pyramid_of_a_scene_and_of_images() {
     let folder = tempfile::tempdir().unwrap();
-    if !device() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let inspect = |arguments: &[&str]| {
         let output = run(folder.path(), &[&["inspect", "--json", "--pyramid"], arguments].concat());
         assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
@@ -232,7 +224,7 @@ fn inspect_draws_lobes_entries_and_errors() {
 #[test]
 fn devices_that_are_not_there_are_exit_code_4() {
     let folder = tempfile::tempdir().unwrap();
-    if device() {
+    if device().is_some() {
         let wanted = ["render", &scene("room.glb"), "--device", "abacus"];
         refuse(folder.path(), &wanted, 4, &["abacus"]);
     }
@@ -252,9 +244,7 @@ fn devices_that_are_not_there_are_exit_code_4() {
 #[test]
 fn a_scene_without_lights_or_triangles_is_rendered_with_a_warning() {
     let folder = tempfile::tempdir().unwrap();
-    if !device() {
-        return;
-    }
+    let Some(()) = device() else { return };
     write(folder.path(), "empty.gltf", r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[]}]}"#);
     let output = run(folder.path(), &["render", "empty.gltf", "--size", "16x8"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
@@ -284,9 +274,7 @@ fn effects_are_listed_with_what_needs_them() {
 
 #[test]
 fn a_stated_set_that_a_surface_needs_more_than_is_said() {
-    if !device() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let folder = tempfile::tempdir().unwrap();
     let screen = scene("screen.glb");
     for (surfaces, warned) in [("diffuse,glossy", false), ("diffuse", true)] {
@@ -302,9 +290,7 @@ fn a_stated_set_that_a_surface_needs_more_than_is_said() {
 #[test]
 fn render_makes_pictures_and_says_where() {
     let folder = tempfile::tempdir().unwrap();
-    if !device() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let room = scene("room.glb");
     let output = run(folder.path(), &["render", &room, "--size", "64x36", "--json"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
@@ -324,9 +310,7 @@ fn render_makes_pictures_and_says_where() {
 #[test]
 fn shadows_go_on_until_their_noise_is_low() {
     let folder = tempfile::tempdir().unwrap();
-    if !device() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let rendered = |name: &str, more: &[&str]| {
         let sweep = scene("sweep.glb");
         let common = ["render", &sweep, "--size", "48x32", "--supersample", "1", "--json", "-o", name];
@@ -400,9 +384,7 @@ fn shells_and_man_know_the_program() {
 
 #[test]
 fn verdicts_have_colours_where_they_are_wanted_and_tables_with_verbose() {
-    if !device() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let folder = tempfile::tempdir().unwrap();
     let run = |arguments: &[&str], environment: &[(&str, &str)]| {
         Command::new(env!("CARGO_BIN_EXE_arealight"))

@@ -3,6 +3,7 @@
 //! the same by `VK_ICD_FILENAMES`. Time is in units of work of a compiler's kind, done by this process before
 //! and after, so that a slow or busy machine changes nothing.
 
+use crate::common::device;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -73,9 +74,7 @@ fn render(scene: &str) -> Used {
 
 #[test]
 fn pipelines_of_every_kind_of_light_compile_within_a_budget() {
-    if arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_none() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let mut unit = yardstick();
     for (scene, kinds) in [
         ("sweep.glb", 1.0),     // quads

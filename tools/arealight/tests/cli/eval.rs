@@ -1,5 +1,6 @@
 //! `arealight eval` as a user runs it.
 
+use crate::common::device;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -30,14 +31,9 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// Whether there is a device; without one, the test is skipped unless one is required.
-fn device() -> bool {
-    arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_some()
-}
-
 /// The methods that can be run here: without a device not the GPU's.
 fn methods<T>(all: impl IntoIterator<Item = T>, name: impl Fn(&T) -> &str) -> impl Iterator<Item = T> {
-    let device = device();
+    let device = device().is_some();
     all.into_iter().filter(move |one| device || name(one) != "gpu")
 }
 
@@ -330,9 +326,7 @@ fn a_tolerance_is_a_gate() {
 
 #[test]
 fn the_gpu_meets_its_measure() {
-    if !device() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let output = precisely(&[&reference("cases.json"), "--against", &reference("truth.json"), "--json"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -352,9 +346,7 @@ fn the_gpu_meets_its_measure() {
 
 #[test]
 fn a_light_that_float32_cannot_hold_costs_only_its_own_answer() {
-    if !device() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let case = |name: &str, size: &str, radiance: &str| {
         format!(
             r#"{{"name": "{name}", "position": [0, 0, 0], "normal": [0, 0, 1], "view": [0, 0, 1],
@@ -385,9 +377,7 @@ fn a_light_that_float32_cannot_hold_costs_only_its_own_answer() {
 
 #[test]
 fn thousands_of_cases_are_answered_each_like_the_one_it_repeats() {
-    if !device() {
-        return;
-    }
+    let Some(()) = device() else { return };
     // Those that are answered, under new names until there are enough
     let answers = |cases: &str| -> Vec<Value> {
         let output = eval(&[cases]);
@@ -443,9 +433,7 @@ fn cases_and_answers_go_through_pipes() {
 
 #[test]
 fn an_image_keeps_its_range_whatever_the_other_images_are() {
-    if !device() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let mut cases = vec![];
     for (name, [width, height], brightest) in [
         ("room", [64, 64], 1.0),

@@ -1,6 +1,6 @@
 //! Outputs are whole or not there, and what cannot be written is said before long work.
 
-use crate::common::run;
+use crate::common::{device, run};
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -131,9 +131,7 @@ fn what_is_interrupted_leaves_the_old_file() {
 
 #[test]
 fn a_picture_goes_through_a_pipe() {
-    if arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_none() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let folder = tempfile::tempdir().unwrap();
     let output = run(folder.path(), &["render", "--size", "32x18", "--supersample", "1", "-o", "-"]);
     let said = String::from_utf8_lossy(&output.stderr);

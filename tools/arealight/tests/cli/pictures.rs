@@ -1,22 +1,15 @@
 //! `arealight bench pictures`: one of each kind, of a few pixels.
 
-use crate::common::run;
+use crate::common::{device, run};
 use std::path::Path;
 
 fn scene(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name).display().to_string()
 }
 
-/// Whether there is a device; without one, the test is skipped unless one is required.
-fn device() -> bool {
-    arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_some()
-}
-
 #[test]
 fn a_strip_and_a_film_are_made_again() {
-    if !device() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let folder = tempfile::tempdir().unwrap();
     let sweep = scene("sweep.glb");
     let make = |file: &str, options: &[&str]| {

@@ -1,12 +1,7 @@
 //! `--lights studio`: models that bring no light.
 
-use crate::common::run;
+use crate::common::{device, run};
 use std::path::{Path, PathBuf};
-
-/// Whether there is a device; without one, the test is skipped unless one is required.
-fn device() -> bool {
-    arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_some()
-}
 
 /// A pyramid on a floor, of one gray material, scaled by `scale`.
 fn model(folder: &Path, name: &str, scale: &str) -> PathBuf {
@@ -50,9 +45,7 @@ fn said(folder: &Path, arguments: &[&str]) -> (serde_json::Value, String) {
 
 #[test]
 fn a_model_without_lights_is_shown_by_the_studio() {
-    if !device() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     model(folder, "model.gltf", "1");
@@ -89,9 +82,7 @@ fn softboxes_are_added_to_what_the_file_has() {
     let screen = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/screen.glb").display().to_string();
     let effects = |more: &[&str]| said(folder.path(), &[&["effects", &screen, "--json"], more].concat()).0;
     assert_eq!(effects(&["--lights", "studio"]), effects(&[]), "one-sided rectangles need nothing more");
-    if !device() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let lights = |more: &[&str]| {
         let common = ["render", &screen, "-o", "a.png", "--json", "--size", "16x9"];
         said(folder.path(), &[&common, more].concat()).0["lights"].as_u64().unwrap()

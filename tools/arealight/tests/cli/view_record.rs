@@ -1,6 +1,6 @@
 //! The viewer without a window: what a script does is what the frames show.
 
-use crate::common::run;
+use crate::common::{device, run};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -76,9 +76,7 @@ fn record(scene: &str, script: &str) -> Recording {
 
 #[test]
 fn a_recording_shows_what_its_script_does() {
-    if arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_none() {
-        return;
-    }
+    let Some(()) = device() else { return };
     // The middle of sweep's lamp
     let recording = record("sweep.glb", &SCRIPT.replace("LAMP", "0.5 0.13"));
     let frames = &recording.frames;
@@ -121,9 +119,7 @@ fn a_recording_shows_what_its_script_does() {
 
 #[test]
 fn shadows_and_scenes_without_a_yardstick_are_shown_too() {
-    if arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_none() {
-        return;
-    }
+    let Some(()) = device() else { return };
     // Disks, spheres and tubes: after the truth comes the picture again
     let recording = record("shapes.glb", "0 key w\n0.25 key w\n0.5 key s\n");
     let modes: Vec<&str> = recording.frames.iter().map(|frame| frame["mode"].as_str().unwrap()).collect();
@@ -133,9 +129,7 @@ fn shadows_and_scenes_without_a_yardstick_are_shown_too() {
 
 #[test]
 fn fog_is_the_scenes_until_it_is_thinner_or_off() {
-    if arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_none() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let recording = record("slats.glb", "0 key s\n0.25 key ,\n0.5 key r\n0.75 key w\n1.25 key f\n");
     let fog: Vec<_> = recording.frames.iter().map(|frame| frame["fog"].as_f64()).collect();
     assert_eq!(fog, [Some(0.15), Some(0.12), Some(0.15), Some(0.15), Some(0.15), None]);

@@ -3,6 +3,7 @@
 #[path = "../../../../examples/rust/tests/screen/mod.rs"]
 mod screen;
 
+use crate::common::device;
 use screen::{Screen, under_validation};
 use std::path::Path;
 use std::process::Stdio;
@@ -39,9 +40,7 @@ const SCRIPT: &str = "
 
 #[test]
 fn a_window_is_silent_and_shows_each_mode() {
-    if arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_none() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let Some(screen) = Screen::start(SIZE) else { return };
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("script"), SCRIPT).unwrap();
@@ -78,9 +77,7 @@ fn a_window_is_silent_and_shows_each_mode() {
 
 #[test]
 fn without_a_display_it_says_what_needs_none() {
-    if arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_none() {
-        return;
-    }
+    let Some(()) = device() else { return };
     let folder = tempfile::tempdir().unwrap();
     let program = env!("CARGO_BIN_EXE_arealight");
     let mut command =

@@ -10,6 +10,7 @@
 //! | [`promise`] | what a way to compute form factors promises |
 //! | [`nearby`] | the values that polygons nearby have: the backward error |
 //! | [`nearby_shape`] | the same of ellipses, spheres and tubes |
+//! | [`search`] | how they are looked for |
 //! | [`judge`] | a family's results against its promises |
 //! | [`ellipse`] | families of ellipses, which are disk lights |
 
@@ -23,6 +24,7 @@ pub mod nearby_shape;
 mod outline;
 pub mod promise;
 pub mod reference;
+pub mod search;
 
 use arealight_oracle::stream;
 

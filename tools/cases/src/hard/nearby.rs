@@ -5,24 +5,13 @@
 //! Where the point lies on the polygon, its value jumps from one side's to the other's, and what is between
 //! counts as reached: there no value is right.
 //!
-//! The reachable interval is searched, not known: its ends are values of polygons that were evaluated. A
-//! search that is too weak overstates the error and never understates it.
+//! [`super::search`] looks for them.
 
 use super::HardCase;
 use super::edges::sum_edges;
 use super::promise::MOVE;
-use super::stream::Stream;
+use super::search::{Movable, Moves};
 use glam::DVec3;
-
-/// A polygon nearby, as each vertex's move in units of the largest one allowed: lengths up to 1.
-type Moves = Vec<DVec3>;
-
-/// Random polygons that are tried.
-const TRIALS: usize = 48;
-/// Random polygons that are tried about the best ones, ever closer.
-const REFINEMENTS: i32 = 200;
-/// Steps along the gradient.
-const STEPS: usize = 4;
 
 /// The values nearby one case.
 #[derive(Debug)]
@@ -54,124 +43,44 @@ impl Nearby {
         self.vertices.len()
     }
 
+    /// An upper bound of the distance from `computed`, which is the absolute value of a signed form factor,
+    /// to the interval of the values nearby. Stops searching at `enough`.
+    pub fn distance(&self, computed: f64, enough: f64) -> f64 {
+        super::search::distance(self, computed, enough)
+    }
+}
+
+impl Movable for Nearby {
+    const REFINEMENTS: i32 = 200;
+    const STEPS: usize = 4;
+
+    fn vectors(&self) -> usize {
+        self.vertices.len()
+    }
+
     /// The signed form factor of a polygon nearby, in float64: its error is 1e-16 over rho, and where rho is
     /// smaller than [`MOVE`], that of a polygon that is nearby too.
-    fn signed(&self, moves: &[DVec3]) -> f64 {
+    fn value(&self, moves: &[DVec3]) -> f64 {
         let moved = self.vertices.iter().zip(&self.radii).zip(moves);
         let vertices: Vec<[f64; 3]> = moved.map(|((v, radius), m)| (*v + *m * *radius).to_array()).collect();
         sum_edges::<f64>([0.0; 3], &vertices).signed_form_factor().clamp(-1.0, 1.0)
     }
 
-    /// An upper bound of the distance from `computed`, which is the absolute value of a signed form factor,
-    /// to the interval of the values nearby. Stops searching at `enough`.
-    pub fn distance(&self, computed: f64, enough: f64) -> f64 {
-        if !computed.is_finite() || computed < 0.0 {
-            return f64::INFINITY;
-        }
-        let given = vec![DVec3::ZERO; self.vertices.len()];
-        let value = self.signed(&given);
-        let end = (value, given.clone());
-        let mut search = Search { nearby: self, computed, enough, lowest: end.clone(), highest: end };
-        let _ = search.is_enough()
-            || search.climb(&given, 1.0)
-            || search.climb(&given, -1.0)
-            || search.translate()
-            || search.scatter()
-            || search.refine();
-        search.distance()
-    }
-}
-
-/// A search for polygons nearby between whose values the computed one is.
-struct Search<'a> {
-    nearby: &'a Nearby,
-    computed: f64,
-    enough: f64,
-    lowest: (f64, Moves),
-    highest: (f64, Moves),
-}
-
-impl Search<'_> {
-    /// The distance from the computed value, of either sign, to the interval.
-    fn distance(&self) -> f64 {
-        let shifts = if self.nearby.ambiguous { &[0.0, 1.0, -1.0][..] } else { &[0.0] };
-        let outside = |signed: f64| (self.lowest.0 - signed).max(signed - self.highest.0).max(0.0);
-        let distance = |shift: &f64| outside(self.computed + shift).min(outside(-self.computed + shift));
+    /// Of the computed value of either sign.
+    fn outside(&self, computed: f64, [low, high]: [f64; 2]) -> f64 {
+        let shifts = if self.ambiguous { &[0.0, 1.0, -1.0][..] } else { &[0.0] };
+        let outside = |signed: f64| (low - signed).max(signed - high).max(0.0);
+        let distance = |shift: &f64| outside(computed + shift).min(outside(-computed + shift));
         shifts.iter().map(distance).fold(f64::INFINITY, f64::min)
     }
 
-    fn is_enough(&self) -> bool {
-        self.distance() <= self.enough
-    }
-
-    /// Notes a polygon's value. Whether that is enough.
-    fn visit(&mut self, moves: &Moves) -> bool {
-        let value = self.nearby.signed(moves);
-        if value < self.lowest.0 {
-            self.lowest = (value, moves.clone());
-        }
-        if value > self.highest.0 {
-            self.highest = (value, moves.clone());
-        }
-        self.is_enough()
-    }
-
-    /// Moves every vertex as far as allowed along the gradient or against it, and again from there.
-    fn climb(&mut self, given: &Moves, way: f64) -> bool {
-        const STEP: f64 = 0.125;
-        let mut moves = given.clone();
-        for _ in 0..STEPS {
-            let mut gradient = moves.clone();
-            for i in 0..moves.len() {
-                for axis in 0..3 {
-                    let place = moves[i];
-                    let mut at = |step: f64| {
-                        moves[i][axis] = place[axis] + step;
-                        self.nearby.signed(&moves)
-                    };
-                    gradient[i][axis] = (at(STEP) - at(-STEP)) * way;
-                    moves[i] = place;
-                }
-            }
-            moves = gradient.iter().map(|g| g.try_normalize().unwrap_or_default()).collect();
-            if self.visit(&moves) {
-                return true;
-            }
-        }
-        false
-    }
-
     /// Moves the whole polygon along axes and diagonals: what matters in contact.
-    fn translate(&mut self) -> bool {
-        (0..27).any(|place| {
+    fn first_moves(&self) -> Vec<Moves> {
+        let moves = |place| {
             let way = DVec3::from_array([place % 3, place / 3 % 3, place / 9].map(|c| f64::from(c) - 1.0));
-            let moves = vec![way.try_normalize().unwrap_or_default(); self.nearby.vertices.len()];
-            self.visit(&moves)
-        })
-    }
-
-    /// Moves each vertex its own random way.
-    fn scatter(&mut self) -> bool {
-        let mut stream = Stream::new("nearby", 0, self.computed.to_bits());
-        (0..TRIALS).any(|_| {
-            let moves: Moves = self.nearby.vertices.iter().map(|_| stream.direction()).collect();
-            self.visit(&moves)
-        })
-    }
-
-    /// Moves on from the polygons at the interval's ends.
-    fn refine(&mut self) -> bool {
-        let mut stream = Stream::new("refined", 0, self.computed.to_bits());
-        (0..2 * REFINEMENTS).any(|trial| {
-            let best = if trial % 2 == 0 { &self.lowest.1 } else { &self.highest.1 };
-            let step = 0.5_f64.powi(trial / 40);
-            let mut next = |m: &DVec3| {
-                let moved = *m + stream.direction() * step;
-                moved / moved.length().max(1.0)
-            };
-            let moves = best.iter().map(&mut next).collect();
-            self.visit(&moves)
-        })
+            vec![way.try_normalize().unwrap_or_default(); self.vertices.len()]
+        };
+        (0..27).map(moves).collect()
     }
 }
 

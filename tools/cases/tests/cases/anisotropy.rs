@@ -1,5 +1,6 @@
 //! Anisotropic GGX: the truth against the reference, and the fitted lobes against the truth.
 
+use crate::read;
 use arealight::{Horizon, LightTable, Quality, SpecularLobes};
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{SupportedCase, read_cases};
@@ -11,11 +12,6 @@ use glam::DVec3;
 use std::sync::LazyLock;
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
-
-fn read(file: &str) -> String {
-    let path = format!("{}/../../tests/data/reference/{file}", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
-}
 
 /// The cases of a family, each with the radiance that is known of it.
 fn known(family: &str) -> Vec<(SupportedCase, DVec3)> {

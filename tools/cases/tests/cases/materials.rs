@@ -1,5 +1,6 @@
 //! Layered materials: the truth against the reference, and the fitted lobes against the truth.
 
+use crate::read;
 use arealight::{LightTable, Quality, SpecularLobes};
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{Case, CaseMaterial, read_cases};
@@ -11,11 +12,6 @@ use glam::DVec3;
 use std::sync::LazyLock;
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
-
-fn read(file: &str) -> String {
-    let path = format!("{}/../../tests/data/reference/{file}", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
-}
 
 /// A case of the reference, with the radiance that is known of it.
 struct Known {

@@ -1,5 +1,6 @@
 //! The oracle against the reference: shading points whose radiance another program found by cubature.
 
+use crate::read;
 use arealight::LightShape;
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{Case, ShapeCase, SupportedCase, read_cases};
@@ -10,11 +11,6 @@ use arealight_oracle::shading::{shape_truth, truth};
 use arealight_oracle::texture::Texture;
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
-
-fn read(file: &str) -> String {
-    let path = format!("{}/../../tests/data/reference/{file}", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
-}
 
 fn cases() -> Vec<Case> {
     read_cases(&read("cases.json")).unwrap()

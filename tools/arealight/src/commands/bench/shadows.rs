@@ -1,14 +1,11 @@
 //! `arealight bench shadows`
 
-mod strip;
-
 use super::Ends;
 use crate::failure::Failure;
 use crate::{lights, progress};
 use arealight_benches::sections::Markers;
 use arealight_benches::{shadow_levels, shadow_motion};
 use arealight_scene::Scene;
-use std::cell::RefCell;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -42,10 +39,6 @@ pub struct Arguments {
     #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64),
         requires = "motion")]
     every: u32,
-    /// Draw four frames of the first film in which everything moves: the truth, and one ray a pixel without
-    /// and with a history (.png).
-    #[arg(long, value_name = "FILE", requires = "motion")]
-    strip: Option<PathBuf>,
     #[command(flatten)]
     ends: Ends,
 }
@@ -113,25 +106,11 @@ fn run_motion(arguments: &Arguments) -> Result<(), Failure> {
     let size = [height * 16 / 9, height];
     let options = shadow_motion::Options { size, truth, every: arguments.every, ..base };
     let scenes = arguments.scenes()?;
-    if let Some(path) = &arguments.strip {
-        strip::check(path)?;
-    }
     let host = arguments.ends.host()?;
 
-    let stills = RefCell::new(vec![]);
-    let first = scenes.first().map(|scene| &*scene.name);
-    let show = |still: shadow_motion::Still| {
-        if arguments.strip.is_some() && first == Some(&*still.scene) {
-            stills.borrow_mut().push(still);
-        }
-    };
     let found = progress::of(options.steps(scenes.len()), "frames", |tell| {
-        shadow_motion::run(&host, &arealight::LightTable::ggx(), &scenes, &options, tell, &show)
+        shadow_motion::run(&host, &arealight::LightTable::ggx(), &scenes, &options, tell)
     })?;
-    if let Some(path) = &arguments.strip {
-        strip::draw(&stills.borrow(), size).save_png(path)?;
-        eprintln!("wrote {}", path.display());
-    }
 
     let command =
         arguments.command(&format!("--motion --size {height} --samples {truth} --every {}", arguments.every));

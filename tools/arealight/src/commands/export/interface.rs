@@ -1,27 +1,21 @@
 //! What a translated kernel binds, and how its buffers are laid out, for the manifest: read from the kernel
 //! itself.
 
-use super::translate::Slot;
+use super::translate::{Slot, globals, is_written};
 use naga::{AddressSpace, ImageClass, Module, ScalarKind, StructMember, TypeInner};
 use serde_json::{Map, Value, json};
 
 /// A kernel's workgroup, bindings and the structs in them.
 pub fn describe(module: &Module, slots: &[Slot]) -> Map<String, Value> {
-    let mut globals: Vec<_> = module
-        .global_variables
-        .iter()
-        .filter_map(|(_, variable)| Some((variable.binding?, variable)))
-        .collect();
-    globals.sort_by_key(|(binding, _)| (binding.group, binding.binding));
     let (mut bindings, mut structs) = (vec![], Map::new());
-    for (binding, variable) in globals {
+    for (binding, variable) in globals(module) {
         let inner = &module.types[variable.ty].inner;
         let name = variable.name.as_deref().unwrap_or_default();
         let mut described = json!({
             "group": binding.group,
             "binding": binding.binding,
             "name": name_of(module, inner, name),
-            "kind": kind(inner, variable.space),
+            "kind": kind(inner, variable.space, is_written(module, variable)),
         });
         if let Some(slot) = slots.iter().find(|slot| slot.of.as_ref() == Some(&binding)) {
             described[slot.table] = slot.index.into();
@@ -65,7 +59,7 @@ fn is_array(module: &Module, members: &[StructMember]) -> bool {
     matches!(members, [one] if matches!(module.types[one.ty].inner, TypeInner::Array { .. }))
 }
 
-fn kind(inner: &TypeInner, space: AddressSpace) -> String {
+fn kind(inner: &TypeInner, space: AddressSpace, is_written: bool) -> String {
     match (inner, space) {
         (TypeInner::Image { arrayed, class: ImageClass::Storage { .. }, .. }, _) => {
             format!("storage texture, 2d{}, rgba32float, written", if *arrayed { " array" } else { "" })
@@ -75,6 +69,7 @@ fn kind(inner: &TypeInner, space: AddressSpace) -> String {
         }
         (TypeInner::Sampler { .. }, _) => "sampler: trilinear, clamped to the edge".into(),
         (_, AddressSpace::Uniform) => "uniform buffer".into(),
+        _ if is_written => "storage buffer, read and written".into(),
         _ => "storage buffer, read".into(),
     }
 }

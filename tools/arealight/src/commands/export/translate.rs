@@ -157,15 +157,9 @@ fn to_msl(module: &Module, info: &ModuleInfo) -> Result<(String, String, Vec<Slo
 /// Numbers buffers, textures and samplers apart, each in the order of bindings. naga wants a buffer more: the
 /// sizes of arrays.
 fn metal_slots(module: &Module) -> (msl::EntryPointResources, Vec<Slot>) {
-    let mut globals: Vec<_> = module
-        .global_variables
-        .iter()
-        .filter_map(|(_, variable)| Some((variable.binding?, variable)))
-        .collect();
-    globals.sort_by_key(|(binding, _)| (binding.group, binding.binding));
     let (mut resources, mut slots) = (msl::EntryPointResources::default(), vec![]);
     let [mut buffers, mut textures, mut samplers] = [0u8; 3];
-    for (binding, variable) in globals {
+    for (binding, variable) in globals(module) {
         let mut target = msl::BindTarget::default();
         let (table, counter) = match module.types[variable.ty].inner {
             TypeInner::Image { .. } => ("texture", &mut textures),
@@ -188,8 +182,17 @@ fn metal_slots(module: &Module) -> (msl::EntryPointResources, Vec<Slot>) {
     (resources, slots)
 }
 
+/// What a kernel binds, in order.
+pub fn globals(module: &Module) -> Vec<(ResourceBinding, &naga::GlobalVariable)> {
+    let variables = module.global_variables.iter();
+    let mut globals: Vec<_> =
+        variables.filter_map(|(_, variable)| Some((variable.binding?, variable))).collect();
+    globals.sort_by_key(|(binding, _)| (binding.group, binding.binding));
+    globals
+}
+
 /// Whether the kernel writes to a resource.
-fn is_written(module: &Module, variable: &naga::GlobalVariable) -> bool {
+pub fn is_written(module: &Module, variable: &naga::GlobalVariable) -> bool {
     let access = match (&module.types[variable.ty].inner, variable.space) {
         (TypeInner::Image { class: naga::ImageClass::Storage { access, .. }, .. }, _) => *access,
         (_, AddressSpace::Storage { access }) => access,
