@@ -1,6 +1,6 @@
 //! The C library as a host uses and misuses it: each mistake has a result and a message that names it.
 
-use arealight::Profile;
+use arealight::{Opening, Profile};
 use arealight_capi::{
     AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_SPECULAR_INPUT,
     AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TWO_SIDED, AREALIGHT_LIGHT_DISK, AREALIGHT_LIGHT_MESH,
@@ -119,7 +119,15 @@ fn lights_that_cannot_be_shaded_are_named() {
         ..light
     };
     let (cone, back) = ([0.0, 1.0, 20.0, 1.0, 30.0, 0.0], [91.0, 1.0]);
-    let spot = profiled(&cone, light());
+    let behind = ArealightLight {
+        has_opening: 1,
+        opening_center: [0.2, 0.3, 0.5],
+        opening_axis_u: [0.5, 0.0, 0.0],
+        opening_axis_v: [0.0, 0.4, 0.0],
+        opening_housed: 1,
+        ..light()
+    };
+    let spot = profiled(&cone, behind);
     for (wrong, result, words) in [
         (ArealightLight { kind: 5, ..light() }, ErrorArgument, "lights[1].kind: 5"),
         (ArealightLight { vertex_count: 2, ..light() }, ErrorLight, "lights[1] 'lamp': vertices: 2 given"),
@@ -143,12 +151,15 @@ fn lights_that_cannot_be_shaded_are_named() {
         (ArealightLight { profile_levels: 0, ..spot }, ErrorLight, "lights[1] 'lamp': profile: levels: 0"),
         (profiled(&back, light()), ErrorLight, "lights[1] 'lamp': profile: pairs[0]: 91 degrees"),
         (profiled(&[], light()), ErrorLight, "lights[1] 'lamp': profile: no pair"),
-        (profiled(&cone, moon()), ErrorLight, "'moon': profile: "),
+        (profiled(&cone, moon()), ErrorLight, "'moon': profile or opening: "),
+        (ArealightLight { has_opening: 2, ..light() }, ErrorArgument, "lights[1].has_opening: 2"),
+        (ArealightLight { opening_housed: 2, ..behind }, ErrorArgument, "lights[1].opening_housed: 2"),
+        (ArealightLight { opening_axis_v: [0.0; 3], ..behind }, ErrorLight, "'lamp': opening: axis_u and"),
         (ArealightLight { reserved: 7, ..light() }, ErrorArgument, "lights[1].reserved: 7 must be 0"),
     ] {
         refused(pack(&[light(), wrong], &mut arrays), result, words);
     }
-    // The twins; what a profile is packed to is what it is in Rust
+    // The twins; what a profile and an opening are packed to is what it is in Rust
     let (mut record, mut rows) = ([0u32; 16], [0.0f32; 512]);
     let mut whole = ArealightPackedLights {
         lights: record.as_mut_ptr().cast(),
@@ -162,6 +173,12 @@ fn lights_that_cannot_be_shaded_are_named() {
         shape: LightShape::Polygon(TRIANGLE.as_chunks().0.iter().map(|v| DVec3::from_array(*v)).collect()),
         radiance: Vec3::ONE,
         profile: Some(Profile::new(cone.as_chunks().0, 4).unwrap()),
+        opening: Some(Opening {
+            center: DVec3::new(0.2, 0.3, 0.5),
+            axis_u: DVec3::X * 0.5,
+            axis_v: DVec3::Y * 0.4,
+            housed: true,
+        }),
         ..Light::default()
     };
     let expected = PackedLights::new(&[expected], DVec3::ZERO).unwrap();

@@ -69,6 +69,38 @@ fn a_spot_is_a_disk_that_shines_where_it_points() {
 }
 
 #[test]
+fn what_a_light_is_seen_through_is_in_its_extras() {
+    // The node is a tenth as large, and its lights point to +y
+    let node = || json!({ "rotation": [FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2], "scale": [0.1, 0.1, 0.1] });
+    let spot = |said: Value| {
+        let extras = json!({ "arealight": said });
+        with_size(&json!({ "type": "spot", "intensity": 683.0, "spot": {}, "extras": extras }), node())
+    };
+    let scene = spot(json!({ "doors": { "length": 3.0, "angle": 0.0 } }));
+    let light = &scene.lights[0];
+    let doors = light.opening.unwrap();
+    let over = doors.center - light.shape.center();
+    assert!((over - DVec3::Y * 0.3).length() < 1e-6 && doors.housed, "{over}");
+    assert!((doors.axis_u.length() - RADIUS).abs() < 1e-6);
+    // A window is in the node's space
+    let window = json!({ "center": [0.0, 0.0, -20.0], "axis_u": [5.0, 0.0, 0.0], "axis_v": [0.0, 4.0, 0.0] });
+    let opening = spot(json!({ "opening": window })).lights[0].opening.unwrap();
+    assert!((opening.center - light.shape.center() - DVec3::Y * 2.0).length() < 1e-5, "{opening:?}");
+    assert!((opening.axis_u - DVec3::X * 0.5).length() < 1e-6 && !opening.housed);
+    // What can't be is named, and the light left out
+    for (said, expected) in [
+        (json!({ "doors": { "length": 3.0 } }), "extras.arealight: missing field `angle`"),
+        (json!({ "doors": { "length": 0.0, "angle": 0.0 } }), "opening: doors of 0"),
+        (json!({ "grid": { "columns": 2, "rows": 2, "depth": 0.1 } }), "opening: doors and grids are of"),
+        (json!({ "opening": window, "doors": { "length": 3.0, "angle": 0.0 } }), "one of doors, grid and"),
+    ] {
+        let scene = spot(said);
+        let warnings = warnings(&scene);
+        assert!(scene.lights.is_empty() && warnings[0].contains(expected), "{warnings:?}");
+    }
+}
+
+#[test]
 fn a_sun_lights_the_whole_scene_alike() {
     let scene = with_size(&json!({ "type": "directional", "intensity": 2.0 * LUMENS_PER_WATT }), json!({}));
     let light = &scene.lights[0];
