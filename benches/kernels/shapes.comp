@@ -2,8 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 // Form factors of disks, spheres and tubes over a list of arguments, so that tests and benchmarks can hold
-// them to what their comments say, and measure what they cost; and yardsticks of the disk: the published one,
-// a sphere's horizon, polygons.
+// them to what their comments say; and the published disk.
 
 layout(local_size_x = 64) in;
 
@@ -11,8 +10,6 @@ layout(constant_id = 0) const int FUNCTION = 0;
 layout(constant_id = 1) const int LEVEL = 0; // 1: the difference form
 // 1 where tubes are cut by the surface whose normal is z too; or a lobe's horizon
 layout(constant_id = 2) const int CHOICE = 0;
-// How often each is evaluated, ever farther to the side: for its cost, in which memory traffic is lost
-layout(constant_id = 3) const int REPEATS = 1;
 
 const int FUNCTION_ELLIPSE = 0;
 const int FUNCTION_SPHERE = 1;
@@ -21,10 +18,6 @@ const int FUNCTION_ARCTANGENT = 3;
 const int FUNCTION_PUBLISHED = 4;
 const int FUNCTION_TUBE = 5;
 const int FUNCTION_LOBE = 6;
-const int FUNCTION_PUBLISHED_CHEAP = 7;
-const int FUNCTION_SPHERE_HORIZON = 8;
-const int FUNCTION_POLYGON = 9;
-const int FUNCTION_NOTHING = 10;
 
 #define AREALIGHT_TWO_SIDED 1
 #define AREALIGHT_DIFFERENCE LEVEL
@@ -89,35 +82,6 @@ float lobe_of(ShapeArguments given, bool sphere) {
     return arealight_form_factor(vector);
 }
 
-// The whole ellipse's form factor along its cone's axis, exactly, and a sphere's horizon.
-float sphere_horizon(ShapeArguments given) {
-    ArealightEllipse ellipse = arealight_ellipse(given.a.xyz, given.b.xyz, given.c.xyz);
-    float root = arealight_confocal_root(ellipse);
-    vec3 axis = arealight_ellipse_cone_axis(ellipse, root);
-    vec2 reciprocals = arealight_confocal_reciprocals(ellipse, root);
-    float area = ellipse.center.z * ellipse.major * ellipse.minor;
-    float whole = area * sqrt(reciprocals.x) * sqrt(reciprocals.y) * inversesqrt(dot(axis, axis));
-    float cosine = normalize(arealight_ellipse_frame(ellipse) * axis).z;
-    return whole > 0.0 ? clipped_sphere(min(whole, 1.0), cosine) : 0.0;
-}
-
-// An inscribed polygon of CHOICE vertices, grown until it has the ellipse's area.
-float polygon_of(ShapeArguments given) {
-    float angle = 2.0 * AREALIGHT_PI / float(CHOICE);
-    vec2 step = vec2(cos(angle), sin(angle));
-    float growth = sqrt(angle / step.y);
-    ArealightOutline outline = arealight_outline_begin();
-    vec2 place = vec2(growth, 0.0);
-    vec3 from = arealight_unit(given.a.xyz + place.x * given.b.xyz + place.y * given.c.xyz);
-    for (int index = 0; index < CHOICE; index++) {
-        place = vec2(place.x * step.x - place.y * step.y, place.x * step.y + place.y * step.x);
-        vec3 to = arealight_unit(given.a.xyz + place.x * given.b.xyz + place.y * given.c.xyz);
-        arealight_outline_edge(outline, from, to);
-        from = to;
-    }
-    return arealight_guarded_form_factor(abs(arealight_outline_vector(outline).z), 0.0);
-}
-
 vec4 evaluate(ShapeArguments given, int tube_ends) {
     bool two_sided = given.d.w != 0.0;
     vec4 result = vec4(0.0);
@@ -143,14 +107,6 @@ vec4 evaluate(ShapeArguments given, int tube_ends) {
         result.xy = vec2(lobe_of(given, false), lobe_of(given, true));
     } else if (FUNCTION == FUNCTION_PUBLISHED) {
         result.xy = published_disk(given.a.xyz, given.b.xyz, given.c.xyz, LEVEL);
-    } else if (FUNCTION == FUNCTION_PUBLISHED_CHEAP) {
-        result.x = published_disk(given.a.xyz, given.b.xyz, given.c.xyz, LEVEL).y;
-    } else if (FUNCTION == FUNCTION_SPHERE_HORIZON) {
-        result.x = sphere_horizon(given);
-    } else if (FUNCTION == FUNCTION_POLYGON) {
-        result.x = polygon_of(given);
-    } else {
-        result.x = given.a.x + given.b.y + given.c.z;
     }
     return result;
 }
@@ -161,10 +117,5 @@ void main() {
         return;
     }
     ShapeArguments given = arguments[index];
-    vec4 sum = vec4(0.0);
-    for (int i = 0; i < REPEATS; i++) {
-        sum += evaluate(given, ends[index]);
-        given.a.xy += vec2(1.0 / 1024.0);
-    }
-    results[index] = sum / float(REPEATS);
+    results[index] = evaluate(given, ends[index]);
 }

@@ -4,10 +4,10 @@ use crate::ladder::frame::processors;
 use crate::ladder::{number, percent};
 use crate::table::Table;
 use crate::textures::{clocked, is_software};
-use arealight::plan::{Output, ShadeOptions, TileOptions};
-use arealight::{Light, LightShape, LightTable};
+use arealight::plan::{MediumOptions, Output, ShadeOptions, TileOptions};
+use arealight::{Effects, Light, LightShape, LightTable};
 use arealight_engine::host::Host;
-use arealight_engine::{Engine, EngineError, SceneRenderer, TiledView};
+use arealight_engine::{Engine, EngineError, Fog, SceneRenderer, TiledView};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_vk::TableFormat;
 use glam::{DVec3, Vec3, Vec4};
@@ -48,10 +48,17 @@ pub enum Way {
     All,
     /// By tiles, which cull so much of a pixel's radiance: [`TileOptions::cull_threshold`].
     Tiles(f32),
+    /// Into fog over a black floor: all of them in every froxel, or by lists and where pixels show it, and
+    /// a pixel may lose so much radiance.
+    Fog(Option<f32>),
 }
 
 /// What is compared.
 pub const WAYS: [Way; 3] = [Way::All, Way::Tiles(0.01), Way::Tiles(0.1)];
+
+/// What is compared in fog.
+pub const FOG_WAYS: [Way; 4] =
+    [Way::Fog(None), Way::Fog(Some(0.0)), Way::Fog(Some(0.001)), Way::Fog(Some(0.01))];
 
 impl Way {
     /// Its name in tables and charts.
@@ -59,6 +66,8 @@ impl Way {
         match self {
             Self::All => "all".to_owned(),
             Self::Tiles(threshold) => format!("tiles, {threshold}"),
+            Self::Fog(None) => "fog, all".to_owned(),
+            Self::Fog(Some(radiance)) => format!("fog, {radiance}"),
         }
     }
 }
@@ -70,7 +79,8 @@ pub struct Row {
     pub lamps: usize,
     /// How they come to a pixel.
     pub way: String,
-    /// The mean over the pixels of the floor of the lights that each is shaded with.
+    /// The mean over the pixels of the floor of the lights that each is shaded with; 0 where that is not
+    /// known.
     pub lights_per_pixel: f64,
     /// Milliseconds of the device, with the lists where it makes them.
     pub milliseconds: f64,
@@ -115,8 +125,15 @@ pub fn run(
     let mut rows = vec![];
     for count in &options.counts {
         let aspect = f64::from(options.size[0]) / f64::from(options.size[1]);
-        let mut scene = floor(options.roughness, FLOOR, aspect);
+        let is_fog = options.ways.iter().any(|way| matches!(way, Way::Fog(_)));
+        let mut scene = floor(options.roughness, FLOOR, aspect, if is_fog { 0.0 } else { 0.5 });
         scene.lights = lamps(*count, FLOOR);
+        if is_fog {
+            // From below the lamps, along them
+            let mut camera = Camera::framing("along", scene.bounds, DVec3::Z, DVec3::Y, aspect);
+            camera.position = DVec3::new(0.0, 0.6 * scene.lights[0].shape.center().y, -0.5 * FLOOR);
+            scene.cameras = vec![camera];
+        }
         let mut frame = Frame::new(&engine, &scene, options)?;
         for way in &options.ways {
             rows.push(frame.measure(*way)?);
@@ -132,6 +149,7 @@ struct Frame<'a> {
     scene: &'a Scene,
     shade: ShadeOptions,
     options: &'a Options,
+    buffers: SceneBuffers,
     renderer: SceneRenderer<'a>,
     /// The picture with all lights, once it is known.
     exact: Vec<Vec4>,
@@ -146,7 +164,7 @@ impl<'a> Frame<'a> {
         let renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, options.size)?;
         let shade =
             ShadeOptions { surfaces: scene.effects(), output: Output::Overwrite, ..ShadeOptions::default() };
-        Ok(Self { host: engine.host(), scene, shade, options, renderer, exact: vec![] })
+        Ok(Self { host: engine.host(), scene, shade, options, buffers, renderer, exact: vec![] })
     }
 
     fn measure(&mut self, way: Way) -> Result<Row, EngineError> {
@@ -165,6 +183,7 @@ impl<'a> Frame<'a> {
                 bytes = view.memory();
                 (seconds, self.lights_by_tiles(&view)?)
             }
+            Way::Fog(culled) => (self.fog(culled)?, 0.0),
         };
         let [rmse, largest] = difference(&self.exact, &self.renderer.radiance()?);
         // On a software device seconds are of all its processors
@@ -184,6 +203,31 @@ impl<'a> Frame<'a> {
     /// lamps.
     fn rounds_with_all(&self) -> u32 {
         if self.scene.lights.len() > 1000 { 1 } else { self.options.rounds }
+    }
+
+    /// Seconds of froxels with all lights or by lists, for 8 x 8 pixels each.
+    fn fog(&mut self, culled: Option<f32>) -> Result<f64, EngineError> {
+        let least_lights = if culled.is_some() { 0 } else { u32::MAX };
+        let fill_hidden = culled.is_none();
+        let options = MediumOptions { least_lights, fill_hidden, ..MediumOptions::default() };
+        let [columns, rows] = self.options.size.map(|side| side.div_ceil(8));
+        let view = self.renderer.fog_view(&self.buffers, [columns, rows, 64], (options, None))?;
+        let fog = Fog {
+            density: 0.02,
+            albedo: Vec3::ONE,
+            anisotropy: 0.5,
+            farthest: 2.0 * FLOOR as f32,
+            cull_radiance: culled.unwrap_or_default(),
+        };
+        let rounds = if culled.is_none() { self.rounds_with_all() } else { self.options.rounds };
+        let seconds = self.fastest(rounds, |renderer, shade| {
+            renderer.shade_as(ShadeOptions { surfaces: Effects::DIFFUSE, ..shade })?;
+            renderer.add_fog(&view, &fog, 0)
+        })?;
+        if culled.is_none() {
+            self.exact = self.renderer.radiance()?;
+        }
+        Ok(seconds)
     }
 
     /// Seconds of the fastest of some runs, the first of which makes pipelines.
@@ -233,11 +277,11 @@ impl ManyLights {
             // A number once, where its rows begin
             let lamps = if before == row.lamps { String::new() } else { row.lamps.to_string() };
             before = row.lamps;
-            let error = |error: f64| if row.way == "all" { String::new() } else { percent(error) };
+            let error = |error: f64| if row.way.ends_with("all") { String::new() } else { percent(error) };
             vec![
                 lamps,
                 row.way.clone(),
-                number(row.lights_per_pixel),
+                if row.lights_per_pixel == 0.0 { String::new() } else { number(row.lights_per_pixel) },
                 number(row.milliseconds),
                 if row.bytes == 0 { String::new() } else { (row.bytes / 1000).to_string() },
                 error(row.rmse),
@@ -277,15 +321,15 @@ fn difference(truth: &[Vec4], found: &[Vec4]) -> [f64; 2] {
     [(squares / count).sqrt() / (mean / count).max(1e-30), largest]
 }
 
-/// A square floor of `side` metres and of this roughness about the origin, in y, of albedo .5; and a camera
+/// A square floor of `side` metres and of this roughness about the origin, in y, of this albedo; and a camera
 /// from above that sees all of it in a picture of `aspect`. Without lights.
-pub fn floor(roughness: f32, side: f64, aspect: f64) -> Scene {
+pub fn floor(roughness: f32, side: f64, aspect: f64, albedo: f32) -> Scene {
     let sweep = include_bytes!("../../scenes/sweep.glb");
     let mut scene = Scene::from_bytes(sweep, "floor").expect("the scene in the repository is valid");
     let floor = scene.materials.iter().position(|material| material.name == "floor");
     scene.triangles.retain(|triangle| Some(triangle.material as usize) == floor);
     if let Some(material) = floor.and_then(|floor| scene.materials.get_mut(floor)) {
-        (material.material.base_color, material.material.roughness) = (Vec3::splat(0.5), roughness);
+        (material.material.base_color, material.material.roughness) = (Vec3::splat(albedo), roughness);
     }
     let middle = scene.bounds.center();
     for corner in scene.triangles.iter_mut().flat_map(|triangle| &mut triangle.positions) {

@@ -38,6 +38,12 @@ impl Markers {
     pub const LIGHTS: Self =
         Self { begin: "<!-- begin: arealight bench lights -->", end: "<!-- end: arealight bench lights -->" };
 
+    /// Of the same in fog.
+    pub const FOG: Self = Self {
+        begin: "<!-- begin: arealight bench lights --fog -->",
+        end: "<!-- end: arealight bench lights --fog -->",
+    };
+
     /// Of [`crate::shadow_motion`].
     pub const SHADOWS_IN_MOTION: Self = Self {
         begin: "<!-- begin: arealight bench shadows --motion -->",

@@ -105,6 +105,9 @@
 // Some light has a profile.
 #define AREALIGHT_EFFECT_PROFILE 33554432
 
+// Some light is seen through an opening.
+#define AREALIGHT_EFFECT_OPENING 67108864
+
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 
@@ -457,6 +460,18 @@ typedef struct ArealightLight {
     // Read only with `profile`: how many angles divide it, 1 to 180. Of 4 the error is 1 % on Lambert
     // surfaces and 3 % on glossy ones, of 8 less than half of it.
     uint32_t profile_levels;
+    // 1: a disk or polygon is seen through the opening below.
+    uint32_t has_opening;
+    // Read only with `has_opening`, as the next three: the middle of the opening, a parallelogram in an
+    // opaque plane with all of the light on one side.
+    double opening_center[3];
+    // From there to the middle of a side.
+    double opening_axis_u[3];
+    // And of another.
+    double opening_axis_v[3];
+    // 1: points on the light's side of the plane see nothing of it, as between a lamp's doors; 0: all of it,
+    // as outside of a window.
+    uint32_t opening_housed;
     // 0
     uint32_t reserved;
 } ArealightLight;
@@ -1381,7 +1396,7 @@ AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_images) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_buffers) == 20);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, dynamic_storage_buffers) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, reserved) == 28);
-AREALIGHT_ASSERT(sizeof(ArealightLight) == 184);
+AREALIGHT_ASSERT(sizeof(ArealightLight) == 264);
 AREALIGHT_ASSERT(offsetof(ArealightLight, name) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightLight, kind) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightLight, two_sided) == 12);
@@ -1403,7 +1418,12 @@ AREALIGHT_ASSERT(offsetof(ArealightLight, ends) == 160);
 AREALIGHT_ASSERT(offsetof(ArealightLight, profile_pair_count) == 164);
 AREALIGHT_ASSERT(offsetof(ArealightLight, profile) == 168);
 AREALIGHT_ASSERT(offsetof(ArealightLight, profile_levels) == 176);
-AREALIGHT_ASSERT(offsetof(ArealightLight, reserved) == 180);
+AREALIGHT_ASSERT(offsetof(ArealightLight, has_opening) == 180);
+AREALIGHT_ASSERT(offsetof(ArealightLight, opening_center) == 184);
+AREALIGHT_ASSERT(offsetof(ArealightLight, opening_axis_u) == 208);
+AREALIGHT_ASSERT(offsetof(ArealightLight, opening_axis_v) == 232);
+AREALIGHT_ASSERT(offsetof(ArealightLight, opening_housed) == 256);
+AREALIGHT_ASSERT(offsetof(ArealightLight, reserved) == 260);
 AREALIGHT_ASSERT(sizeof(ArealightReach) == 80);
 AREALIGHT_ASSERT(offsetof(ArealightReach, center) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightReach, radius) == 24);

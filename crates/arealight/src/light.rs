@@ -23,8 +23,8 @@ pub struct Light {
     /// How the radiance changes with the angle from the front: of a flat, convex polygon or a disk, which is
     /// shaded as [`Light::DISK_CORNERS`] vertices then. The back of a two-sided light has it, too.
     pub profile: Option<Profile>,
-    /// What it is seen through, if not all around: of a polygon or a disk, without a profile of a concave one,
-    /// too.
+    /// What it is seen through, if not all around: of a polygon, concave ones too unless it has a profile, or
+    /// of a disk.
     pub opening: Option<Opening>,
     /// What shines.
     pub shape: LightShape,
@@ -112,7 +112,8 @@ impl Light {
     /// The vertices that a disk with a profile or an opening has.
     pub const DISK_CORNERS: u32 = 12;
 
-    /// The light as it is packed: of a disk with a profile or an opening the polygon of its area that stands for it.
+    /// The light as it is packed: of a disk with a profile or an opening the polygon of its area that stands
+    /// for it.
     pub fn outlined(&self) -> Cow<'_, Self> {
         let LightShape::Disk { center, axis_u, axis_v } = self.shape else { return Cow::Borrowed(self) };
         if !self.is_shaped() || self.texture.is_some() {

@@ -25,10 +25,10 @@ pub struct PackedLights {
     /// Of each of these its vertices' positions relative to its center, in xyz. A mesh has before each face's
     /// vertices a row with the face's unit normal in xyz and their count in w. After the vertices of a
     /// textured light come four rows, its image's place: (corner, lowest u), (axis of u, lowest v), (axis of
-    /// v, extent in u), (extent in v, 0, 0, 0), see [`TextureMap`]. After those of a light with an opening come
-    /// its rows (`lights/opening.glsl`), and after those a profile's: (scale, levels, piece scale, 0), of each
-    /// level its place ([`Profile::places`]) and the squared tangent of its angle, of each piece's beginning
-    /// its place with the slope last, and the end with slope 0.
+    /// v, extent in u), (extent in v, 0, 0, 0), see [`TextureMap`]. After those come the rows of its opening
+    /// (`lights/opening.glsl`), and then of its profile: (scale, levels, piece scale, 0), of each level its
+    /// place ([`Profile::places`]) and the squared tangent of its angle, of each piece's beginning its place
+    /// with the slope last, and the end with slope 0.
     pub vertices: Vec<[f32; 4]>,
     /// One record per disk, sphere or tube: by kind in this order, else in the given one.
     pub shapes: Vec<GpuShape>,

@@ -185,9 +185,9 @@ impl Profile {
         1.0 / (1.0 - self.end)
     }
 
-    /// Its places as the GPU has them, [`Profile::PIECES`] and one. Each has in x how far it is from the axis,
-    /// the squared sine, in parts of where the profile ends: what a surface opposite of the light gets goes
-    /// with it. In y the factor, and in z the factor's integral over x from 0.
+    /// Its places as the GPU has them, [`Profile::PIECES`] and one. x is how far each is from the axis, the
+    /// squared sine, in parts of where the profile ends: what a surface opposite of the light gets goes with
+    /// it. y is the factor, and z the factor's integral over x from 0.
     pub fn places(&self) -> Vec<DVec3> {
         let mut places: Vec<DVec3> = Vec::with_capacity(Self::PIECES + 1);
         for index in 0..=Self::PIECES {

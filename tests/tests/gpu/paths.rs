@@ -11,7 +11,7 @@ const HALF: f64 = 4.0;
 
 /// A floor at the height 0 alone, seen from above under `lights`.
 fn floor(lights: Vec<Light>) -> Scene {
-    Scene { lights, ..many_lights::floor(0.9, 2.0 * HALF, 1.6) }
+    Scene { lights, ..many_lights::floor(0.9, 2.0 * HALF, 1.6, 0.5) }
 }
 
 /// A light with the corners center ± u ± v, whose front is to the side of u x v.

@@ -50,9 +50,10 @@ pub(crate) fn is_said(extras: &Value) -> bool {
 
 /// A node's light as it is seen: behind what `extras.arealight` says, checked; of a grid a light a cell.
 pub(crate) fn behind(light: Light, extras: &Value, node: &PlacedNode) -> Result<Vec<Light>, String> {
-    let said = match extras {
-        Value::Null => Said::default(),
-        said => Said::deserialize(said).map_err(|error| format!("extras.arealight: {error}"))?,
+    let said = if is_said(extras) {
+        Said::deserialize(extras).map_err(|error| format!("extras.arealight: {error}"))?
+    } else {
+        Said::default()
     };
     let scale = node.world.matrix3.z_axis.length();
     let made = match said {

@@ -9,9 +9,9 @@ use std::f64::consts::TAU;
 /// sends.
 const CORNERS: u32 = 256;
 
-/// What a transformed cosine gets through a profile, signed. `vertices` are what is seen of the light, convex,
-/// `visible` what counts of that, both from the shading point. The float64 twin of `lights/shaped.glsl`, but for its
-/// disks, which are finer here.
+/// What a transformed cosine gets through a profile, signed. `vertices` are what is seen of the light,
+/// convex, `visible` what counts of that, both from the shading point. The float64 twin of
+/// `lights/shaped.glsl`, but for its disks, which are finer here.
 pub(super) fn profiled(profile: &Profile, vertices: &[DVec3], visible: &[DVec3], inverse: &DMat3) -> f64 {
     let Some(normal) = normal_of(vertices) else { return 0.0 };
     let foot = normal * normal.dot(vertices[0]);

@@ -12,7 +12,8 @@ use std::process::ExitCode;
 
 /// Measure what many lights cost: a floor under 10 to 10,000 lamps, shaded with all of them and by tiles.
 ///
-/// Tiles cull a stated fraction of a pixel's radiance. Errors are against the picture with all lights.
+/// Tiles cull a stated fraction of a pixel's radiance, lists of froxels a stated radiance. Errors are against
+/// the picture with all lights.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// How many lamps there are.
@@ -30,8 +31,11 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = Options::default().rounds,
         value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
+    /// Fog over a black floor instead, with all lamps and by lists of froxels.
+    #[arg(long)]
+    fog: bool,
     /// Write a chart of time and error as SVG.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with = "fog")]
     svg: Option<PathBuf>,
     #[command(flatten)]
     ends: Ends,
@@ -48,7 +52,7 @@ fn parse_roughness(text: &str) -> Result<f32, String> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let Arguments { lamps, size, roughness, rounds, svg, ends } = arguments;
+    let Arguments { lamps, size, roughness, rounds, fog, svg, ends } = arguments;
     svg.as_deref().map_or(Ok(()), plots::check)?;
     let host = ends.host()?;
     let options = Options {
@@ -56,17 +60,18 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         size: *size,
         roughness: *roughness,
         rounds: *rounds,
-        ways: many_lights::WAYS.to_vec(),
+        ways: if *fog { many_lights::FOG_WAYS.to_vec() } else { many_lights::WAYS.to_vec() },
     };
     let found = progress::of(many_lights::steps(&options), "frames", |tell| {
         many_lights::run(&host, &arealight::LightTable::ggx(), &options, tell)
     })?;
 
-    let command = "arealight bench lights --markdown docs/data/tiles.md --svg docs/images/lights.svg";
-    let section = found.to_markdown(command);
+    let (markers, how) =
+        if *fog { (Markers::FOG, "--fog") } else { (Markers::LIGHTS, "--svg docs/images/lights.svg") };
+    let section = found.to_markdown(&format!("arealight bench lights {how} --markdown docs/data/tiles.md"));
     if let Some(path) = svg {
         plots::draw(Kind::Lights, &serde_json::to_value(&found).unwrap_or_default(), path)?;
     }
-    ends.section(&found, Markers::LIGHTS, &section, &found.to_text())?;
+    ends.section(&found, markers, &section, &found.to_text())?;
     Ok(ExitCode::SUCCESS)
 }
