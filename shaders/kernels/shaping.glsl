@@ -11,7 +11,8 @@
 uvec2 shaping_rows(ArealightGpuLight record) {
     bool has_opening = AREALIGHT_HAS_OPENINGS && (record.flags & LIGHT_OPENING) != 0u;
     uint profile = record.shaping + (has_opening ? AREALIGHT_OPENING_ROWS : 0u);
-    bool has_profile = !AREALIGHT_HAS_OPENINGS || (record.flags & LIGHT_PROFILE) != 0u;
+    bool has_profile = AREALIGHT_HAS_PROFILES
+        && (!AREALIGHT_HAS_OPENINGS || (record.flags & LIGHT_PROFILE) != 0u);
     return uvec2(has_profile ? profile : AREALIGHT_NO_ROW, has_opening ? record.shaping : AREALIGHT_NO_ROW);
 }
 
@@ -22,7 +23,7 @@ float shaping_factor(ArealightGpuLight record, vec3 normal, vec3 position, vec3 
     if (AREALIGHT_HAS_OPENINGS && rows.y != AREALIGHT_NO_ROW) {
         factor = arealight_opening_factor(rows.y, position, offset);
     }
-    if (rows.x != AREALIGHT_NO_ROW) {
+    if (AREALIGHT_HAS_PROFILES && rows.x != AREALIGHT_NO_ROW) {
         factor *= arealight_profile_factor(rows.x, normal, offset);
     }
     return factor;

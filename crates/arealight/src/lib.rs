@@ -74,6 +74,7 @@
 pub mod blockers;
 pub mod effects;
 pub mod gpu;
+mod grid;
 pub mod holes;
 pub mod ies;
 pub mod kernels;

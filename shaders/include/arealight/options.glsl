@@ -100,7 +100,11 @@
 #define AREALIGHT_TEXTURED_DISKS 1
 #endif
 
-// Some light is seen through an opening (with AREALIGHT_SHAPED): those whose record says so.
+// Some light has a profile, and some is seen through an opening (with AREALIGHT_SHAPED): those whose records
+// say so.
+#ifndef AREALIGHT_PROFILES
+#define AREALIGHT_PROFILES 1
+#endif
 #ifndef AREALIGHT_OPENINGS
 #define AREALIGHT_OPENINGS 0
 #endif
@@ -164,6 +168,7 @@ const bool AREALIGHT_HAS_THIN_FILM = bool(AREALIGHT_THIN_FILM);
 const bool AREALIGHT_HAS_TWO_SIDED = bool(AREALIGHT_TWO_SIDED);
 const bool AREALIGHT_HAS_TEXTURED_POLYGONS = bool(AREALIGHT_TEXTURED_POLYGONS);
 const bool AREALIGHT_HAS_TEXTURED_DISKS = bool(AREALIGHT_TEXTURED_DISKS);
+const bool AREALIGHT_HAS_PROFILES = bool(AREALIGHT_PROFILES);
 const bool AREALIGHT_HAS_OPENINGS = bool(AREALIGHT_OPENINGS);
 const bool AREALIGHT_CLIPS_AT_SURFACE = bool(AREALIGHT_SURFACE_HORIZON);
 const bool AREALIGHT_USES_FORMULA = bool(AREALIGHT_FORMULA);

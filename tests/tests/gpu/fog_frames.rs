@@ -1,7 +1,7 @@
 //! A medium before pictures: froxels against Monte Carlo.
 
-use arealight::Profile;
 use arealight::plan::MediumOptions;
+use arealight::{Opening, Profile};
 use arealight_engine::Fog;
 use arealight_tests::frame::scene;
 use arealight_tests::prelude::*;
@@ -179,9 +179,16 @@ fn crowded(count: usize) -> Scene {
         };
         let profile = matches!(shape, LightShape::Polygon(_)).then(|| Profile::cone(0.3, 0.6, 4).unwrap());
         let profile = profile.filter(|_| index % 8 == 3);
+        let opening = matches!(shape, LightShape::Polygon(_)).then(|| {
+            let normal = shape.area_vector().normalize_or_zero();
+            let (u, v) = normal.any_orthonormal_pair();
+            let center = shape.center() + 0.2 * normal;
+            Opening { center, axis_u: 0.1 * u, axis_v: 0.1 * v, housed: index % 16 == 7 }
+        });
+        let opening = opening.filter(|_| index % 8 == 7);
         let two_sided = index % 3 == 0 && profile.is_none();
         let radiance = Vec3::splat(random.between(1.0, 20.0) as f32);
-        scene.lights.push(Light { shape, radiance, two_sided, profile, ..Light::default() });
+        scene.lights.push(Light { shape, radiance, two_sided, profile, opening, ..Light::default() });
     }
     scene
 }

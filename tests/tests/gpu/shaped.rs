@@ -162,7 +162,7 @@ fn opened_points(seed: u64, surface: &Surface, count: usize, has_profiles: bool)
         }
         let vertices = light.shape.vertices().to_vec();
         let center = light.shape.center();
-        let normal = (center.normalize() + 0.5 * random.direction()).normalize();
+        let normal = (center.normalize_or_zero() + 0.5 * random.direction()).normalize_or_zero();
         let height = vertices.iter().map(|vertex| vertex.dot(normal)).fold(f64::INFINITY, f64::min);
         let part = if index % 11 == 7 { -0.4 } else { random.between(0.05, 0.99) };
         // Onto the plane, as seen from the point
@@ -240,7 +240,9 @@ fn openings_of_any_size_and_place_let_no_more_through_than_there_is() {
                     opening.center *= scale;
                     (opening.axis_u, opening.axis_v) = (opening.axis_u * scale, opening.axis_v * scale);
                     let LightShape::Polygon(vertices) = &mut given.light.shape else { unreachable!() };
-                    vertices.iter_mut().for_each(|vertex| *vertex *= scale);
+                    for vertex in vertices.iter_mut() {
+                        *vertex *= scale;
+                    }
                 }
             }
         }

@@ -37,6 +37,11 @@ struct ArealightLocalShaped {
     ArealightLocalOpening opening;
 };
 
+// Whether a light has a profile, by its first row.
+bool arealight_has_profile(uint profile) {
+    return AREALIGHT_HAS_PROFILES && (!AREALIGHT_HAS_OPENINGS || profile != AREALIGHT_NO_ROW);
+}
+
 // A vertex of the light from the foot, in the shading frame.
 vec3 arealight_from_foot(ArealightLocalShaped local, uint index) {
     return local.polygon.center - local.foot + local.polygon.to_frame * arealight_bridge_vertex(index);
@@ -105,7 +110,9 @@ bool arealight_to_local(ArealightPoint point, ArealightShapedLight light, out Ar
     local.foot = height * local.normal;
     local.height = height * height;
     local.profile = light.profile;
-    if (AREALIGHT_HAS_OPENINGS && light.profile == AREALIGHT_NO_ROW) {
+    local.levels = 0u;
+    local.levels_end = 0u;
+    if (!arealight_has_profile(light.profile)) {
         return lit;
     }
     lit = arealight_find_range(local, height) && lit;
@@ -164,12 +171,12 @@ vec3 arealight_level_vector(mat3 space, ArealightLocalShaped local, float square
     uint start = count;
     vec2 part;
     vec3 a = arealight_from_foot(local, local.polygon.end - 1u);
-    for (uint index = 0u; index < count && start == count; index++) {
+    for (uint index = 0u; AREALIGHT_HAS_PROFILES && index < count && start == count; index++) {
         vec3 b = arealight_from_foot(local, local.polygon.first + index);
         start = dot(a, a) >= square && arealight_edge_in_disk(a, b, square, part) ? index : start;
         a = b;
     }
-    bool has_rim = !AREALIGHT_HAS_OPENINGS || square < AREALIGHT_NO_RIM;
+    bool has_rim = AREALIGHT_HAS_PROFILES && (!AREALIGHT_HAS_OPENINGS || square < AREALIGHT_NO_RIM);
     bool is_whole = has_rim && start == count;
     if (is_whole && !local.holds_foot) {
         return vec3(0.0);
@@ -187,8 +194,9 @@ vec3 arealight_level_vector(mat3 space, ArealightLocalShaped local, float square
         uint index = is_whole ? 0u : start + step;
         index -= index < count ? 0u : count;
         vec3 b = arealight_from_foot(local, local.polygon.first + index);
-        bool is_met = arealight_edge_in_disk(a, b, square, part);
-        bool comes = is_whole || dot(a, a) >= square;
+        bool is_met = !AREALIGHT_HAS_PROFILES || arealight_edge_in_disk(a, b, square, part);
+        part = AREALIGHT_HAS_PROFILES ? part : vec2(0.0, 1.0);
+        bool comes = is_whole || (AREALIGHT_HAS_PROFILES && dot(a, a) >= square);
         vec3 from = a + part.x * (b - a);
         vec3 to = a + part.y * (b - a);
         if (is_met || is_whole) {
@@ -224,15 +232,6 @@ vec3 arealight_level_vector(mat3 space, ArealightLocalShaped local, float square
         arealight_clipped_vertex(outline.clipped, space, outline.first);
     }
     return arealight_clipped_vector(outline.clipped, front);
-}
-
-// That of all that is seen of it.
-vec3 arealight_seen_vector(mat3 space, ArealightLocalShaped local, float front) {
-    if (AREALIGHT_HAS_OPENINGS && local.opening.is_between) {
-        return arealight_level_vector(space, local, AREALIGHT_NO_RIM, front);
-    }
-    return arealight_outline_form_factor(space, local.polygon.center, local.polygon.to_frame,
-                                         local.polygon.first, local.polygon.end, front);
 }
 
 // A lobe's space, as a profile's mean over a ring needs it.
@@ -296,10 +295,12 @@ float arealight_profile_mean(ArealightLocalShaped local, ArealightRingLobe lobe,
 // Error beyond the form factors': of the profile within a ring, where it is its mean.
 vec3 arealight_vector_form_factor(mat3 space, ArealightLocalShaped local) {
     float front = AREALIGHT_HAS_TWO_SIDED ? local.polygon.side : 1.0;
-    vec3 all = arealight_seen_vector(space, local, front);
-    if (AREALIGHT_HAS_OPENINGS && local.profile == AREALIGHT_NO_ROW) {
-        return front * all;
+    if (!AREALIGHT_HAS_PROFILES) {
+        return front * arealight_level_vector(space, local, AREALIGHT_NO_RIM, front);
     }
+    vec3 all = AREALIGHT_HAS_OPENINGS ? vec3(0.0)
+        : arealight_outline_form_factor(space, local.polygon.center, local.polygon.to_frame,
+                                        local.polygon.first, local.polygon.end, front);
     ArealightRingLobe lobe = arealight_ring_lobe(space);
     vec3 sum = vec3(0.0);
     vec3 within = vec3(0.0);
@@ -308,20 +309,30 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalShaped local) {
     for (uint row = local.levels; row <= local.levels_end; row++) {
         vec3 vector = all;
         vec3 to = local.high;
+        float square = AREALIGHT_NO_RIM;
         bool is_last = row == local.levels_end;
         if (!is_last) {
             vec4 level = arealight_bridge_profile(row);
-            float square = level.w * local.height;
+            square = level.w * local.height;
             if (square <= local.nearest) {
                 continue;
             }
             is_last = square >= local.farthest;
             if (!is_last) {
-                vector = arealight_level_vector(space, local, square, front);
                 to = level.xyz;
+                // With openings all that is seen goes the same way
+                vector = AREALIGHT_HAS_OPENINGS ? all : arealight_level_vector(space, local, square, front);
             }
         }
-        sum += arealight_profile_mean(local, lobe, from, to, vector - within) * (vector - within);
+        if (AREALIGHT_HAS_OPENINGS) {
+            vector = arealight_level_vector(space, local, is_last ? AREALIGHT_NO_RIM : square, front);
+        }
+        vec3 ring = vector - within;
+        float mean = 1.0;
+        if (arealight_has_profile(local.profile)) {
+            mean = arealight_profile_mean(local, lobe, from, to, ring);
+        }
+        sum += mean * ring;
         if (is_last) {
             break;
         }

@@ -92,7 +92,10 @@ fn what_a_light_is_seen_through_is_in_its_extras() {
         (json!({ "doors": { "length": 3.0 } }), "extras.arealight: missing field `angle`"),
         (json!({ "doors": { "length": 0.0, "angle": 0.0 } }), "opening: doors of 0"),
         (json!({ "grid": { "columns": 2, "rows": 2, "depth": 0.1 } }), "opening: doors and grids are of"),
-        (json!({ "opening": window, "doors": { "length": 3.0, "angle": 0.0 } }), "one of doors, grid and opening, not several"),
+        (
+            json!({ "opening": window, "doors": { "length": 3.0, "angle": 0.0 } }),
+            "one of doors, grid and opening, not several",
+        ),
     ] {
         let scene = spot(said);
         let warnings = warnings(&scene);

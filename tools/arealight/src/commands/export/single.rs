@@ -35,10 +35,9 @@ fn option_of(effect: Effects) -> String {
         "glossy" => "SPECULAR".into(),
         "ellipse" => "DISKS".into(),
         "mesh" => "MESHES".into(),
-        "profile" => "SHAPED".into(),
         "textured" => "TEXTURED_POLYGONS".into(),
         "textured_ellipse" => "TEXTURED_DISKS".into(),
-        name @ ("polygon" | "sphere" | "tube" | "opening") => name.to_uppercase() + "S",
+        name @ ("polygon" | "sphere" | "tube" | "opening" | "profile") => name.to_uppercase() + "S",
         name => name.to_uppercase(),
     }
 }
