@@ -20,7 +20,7 @@ mod pipelines;
 mod views;
 
 pub use arealight;
-pub use arealight::{Effects, Level, LightShape, Profile, Quality, TubeEnds};
+pub use arealight::{Effects, Level, LightShape, Opening, Profile, Quality, TubeEnds};
 pub use light::AreaLight;
 
 use bevy::core_pipeline::core_3d::main_opaque_pass_3d;

@@ -1,7 +1,7 @@
 //! The component, and how it moves.
 
 use arealight::glam::{DAffine3, DVec2, DVec3, Vec3};
-use arealight::{Light, LightShape, LightTexture, Profile};
+use arealight::{Light, LightShape, LightTexture, Opening, Profile};
 use bevy::color::LinearRgba;
 use bevy::ecs::component::Component;
 use bevy::light::RectLight;
@@ -35,6 +35,8 @@ pub struct AreaLight {
     pub two_sided: bool,
     /// How the radiance changes with the angle from the front, of a flat and convex light.
     pub profile: Option<Profile>,
+    /// What a flat light is seen through, in the entity's space: a window, or the end of its doors.
+    pub opening: Option<Opening>,
     /// Multiplies the radiance of a polygon or disk, upright as seen from -z: its box along x and y, or the
     /// disk's axes, has the whole image. It is shown in 256 texels a side, with mips.
     pub image: Option<Handle<Image>>,
@@ -43,7 +45,8 @@ pub struct AreaLight {
 impl AreaLight {
     /// White light of 1000 cd/m² from the front of a shape in the entity's space.
     pub fn new(shape: LightShape) -> Self {
-        Self { shape, radiance: LinearRgba::WHITE * 1000.0, two_sided: false, profile: None, image: None }
+        let radiance = LinearRgba::WHITE * 1000.0;
+        Self { shape, radiance, two_sided: false, profile: None, opening: None, image: None }
     }
 
     /// A rectangle about the entity's origin, of a width along x and a height along y, that faces -z, to
@@ -83,6 +86,12 @@ impl AreaLight {
             two_sided: self.two_sided,
             texture: image.map(|layer| LightTexture { layer, uvs: uvs(&self.shape, mirrored) }),
             profile: self.profile.clone(),
+            opening: self.opening.map(|opening| Opening {
+                center: world.transform_point3(opening.center),
+                axis_u: world.transform_vector3(opening.axis_u),
+                axis_v: world.transform_vector3(opening.axis_v),
+                ..opening
+            }),
             shape: moved(&self.shape, &world)?,
         })
     }

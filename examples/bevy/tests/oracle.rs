@@ -11,7 +11,7 @@ use bevy::camera::{ScalingMode, Viewport};
 use bevy::prelude::*;
 use bevy::render::camera::TemporalJitter;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
-use bevy_arealight::{AreaLight, AreaLightPlugin, LightShape, Profile, TubeEnds};
+use bevy_arealight::{AreaLight, AreaLightPlugin, LightShape, Opening, Profile, TubeEnds};
 use headless::{add_picture, app, picture};
 
 const SIZE: [u32; 2] = [96, 64];
@@ -63,6 +63,8 @@ fn lights() -> Vec<(&'static str, AreaLight, Transform)> {
     let (p0, p1) = (DVec3::new(-0.8, 0.0, 0.0), DVec3::new(0.6, 0.2, 0.1));
     let tube = |ends| LightShape::Tube { p0, p1, radius: 0.1, ends };
     let spot = Profile::new(&[[0.0, 1.0], [30.0, 1.0], [70.0, 0.0]], 4).unwrap();
+    let lamp = AreaLight::rectangle(0.5, 0.3);
+    let doors = Opening::doors(&lamp.shape, 0.3, 0.4).unwrap();
     let down = Transform::from_xyz(0.3, 1.5, -0.5).looking_at(Vec3::new(0.0, 0.0, 0.4), Vec3::Z);
     let warm = |light: AreaLight| AreaLight { radiance: LinearRgba::rgb(8.0, 7.0, 5.0), ..light };
     [
@@ -74,6 +76,7 @@ fn lights() -> Vec<(&'static str, AreaLight, Transform)> {
         ("tube", AreaLight::new(tube(TubeEnds::Flat)), down),
         ("capsule", AreaLight::new(tube(TubeEnds::Round)), down),
         ("spot", AreaLight { profile: Some(spot), ..AreaLight::rectangle(0.4, 0.3) }, down),
+        ("lamp with doors", AreaLight { opening: Some(doors), ..lamp }, down.with_scale(Vec3::splat(1.5))),
     ]
     .map(|(name, light, transform)| (name, warm(light), transform))
     .to_vec()
@@ -108,6 +111,12 @@ fn in_world(light: &AreaLight, transform: &Transform) -> Vec<Light> {
         radiance,
         two_sided: light.two_sided,
         profile: light.profile.clone(),
+        opening: light.opening.map(|opening| Opening {
+            center: point(opening.center),
+            axis_u: axis(opening.axis_u),
+            axis_v: axis(opening.axis_v),
+            ..opening
+        }),
         ..Light::default()
     };
     shapes.into_iter().map(of).collect()
@@ -279,6 +288,8 @@ fn images_stand_upright_seen_from_the_front_and_may_be_changed() {
     let parts = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [0, 0, 0, 255]];
     let places = [[0.6, -0.6], [-0.6, -0.6], [0.6, 0.6], [-0.6, 0.6]].map(|[x, z]| DVec3::new(x, 0.0, z));
     let shown = app.world_mut().resource_mut::<Assets<Image>>().add(image(2, 2, parts.concat()));
+    let lamp = AreaLight::rectangle(0.5, 0.3);
+    let doors = Opening::doors(&lamp.shape, 0.3, 0.4).unwrap();
     let down = Transform::from_xyz(0.0, 0.4, 0.0).looking_at(Vec3::ZERO, Vec3::NEG_Z);
     let seen = Seen::whole();
     let pixel_at = |place: DVec3| {
