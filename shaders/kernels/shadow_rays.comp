@@ -91,10 +91,37 @@ float penumbra_width(PickedLight light, float part, float distance, float alpha)
     return min(size * part / max(1.0 - part, 1e-3), size * 16.0);
 }
 
-// A ray to a light with a profile or an opening: of several to all of the light one, by their factor.
+// The outline of a light's opening from a point, if that is beyond it and looks smaller than the light.
+bool smaller_opening(ArealightGpuLight record, vec3 position, out ArealightShadowOutline outline) {
+    uint row = shaping_rows(record).y;
+    if (!AREALIGHT_HAS_OPENINGS || row == AREALIGHT_NO_ROW) {
+        return false;
+    }
+    vec3 center = arealight_bridge_profile(row).xyz - position;
+    vec3 axis_u = arealight_bridge_profile(row + 1u).xyz;
+    vec3 axis_v = arealight_bridge_profile(row + 2u).xyz;
+    outline = arealight_rectangle_outline(center, axis_u, axis_v);
+    vec3 to_light = record.center - position;
+    vec2 distances = vec2(length(center), length(to_light));
+    vec2 heights = vec2(4.0 * dot(cross(axis_u, axis_v), center),
+                        abs(dot(record.normal, to_light)) * record.area * record.radius * record.radius);
+    vec2 sizes = heights / (distances * distances * distances);
+    return arealight_opening_height(row, 0u, position) > 0.0 && sizes.x < sizes.y;
+}
+
+// A ray to a light with a profile or an opening: of several to all of the light, or through all of the
+// opening, one, by the factor of what they meet. The light's `size` becomes that of what the opening shows.
 bool draw_shaped(ArealightGpuLight record, ArealightShadowOutline outline, ArealightPoint point, mat3 space,
-                 vec2 random, out ArealightShadowRay ray) {
+                 vec2 random, inout float size, out ArealightShadowRay ray) {
     const int CANDIDATES = 8;
+    ArealightShadowOutline opening;
+    bool through = smaller_opening(record, point.position, opening);
+    vec3 to_light = record.center - point.position;
+    if (through) {
+        outline = opening;
+        float area = 2.0 * length(cross(opening.axis_u, opening.axis_v));
+        size = min(size, sqrt(area) * length(to_light) / length(opening.center));
+    }
     float choice = fract(dot(random, vec2(37.31, 91.73)));
     float sum = 0.0;
     bool is_drawn = false;
@@ -103,8 +130,11 @@ bool draw_shaped(ArealightGpuLight record, ArealightShadowOutline outline, Areal
         // Spread over the light: the sequence of the plastic number
         vec2 place = fract(random + float(index) * vec2(0.75487767, 0.56984029));
         if (arealight_draw_ray(outline, point.to_frame, space, place, one)) {
+            float height = dot(record.normal, to_light) / dot(record.normal, one.direction);
+            one.distance = through ? clamp(height, 0.0, 1e30) : one.distance;
             vec3 offset = one.distance * one.direction;
             float factor = shaping_factor(record, record.normal, point.position, offset);
+            factor = through && !is_in_light(record, offset - to_light) ? 0.0 : factor;
             if (factor > 0.0 && arealight_choose(choice, sum, factor)) {
                 ray = one;
                 is_drawn = true;
@@ -125,7 +155,7 @@ vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec2 rand
     bool is_drawn;
     uint index = pick & PICK_INDEX;
     if (HAS_SHAPED && (pick & PICK_SHAPE) == 0u && (lights[index].flags & LIGHT_SHAPED) != 0u) {
-        is_drawn = draw_shaped(lights[index], outline, point, space, random, ray);
+        is_drawn = draw_shaped(lights[index], outline, point, space, random, light.size, ray);
     } else {
         is_drawn = arealight_draw_ray(outline, point.to_frame, space, random, ray);
     }

@@ -29,4 +29,23 @@ float shaping_factor(ArealightGpuLight record, vec3 normal, vec3 position, vec3 
     return factor;
 }
 
+// Whether a place in a light's plane, from its center, is within its outline.
+bool is_in_light(ArealightGpuLight record, vec3 place) {
+    vec3 normal = abs(record.normal);
+    bool drops_x = normal.x >= max(normal.y, normal.z);
+    bool drops_y = !drops_x && normal.y >= normal.z;
+    bool is_in = false;
+    vec3 a = arealight_bridge_vertex(record.first_vertex + record.vertex_count - 1u) - place;
+    for (uint index = 0u; index < record.vertex_count; index++) {
+        vec3 b = arealight_bridge_vertex(record.first_vertex + index) - place;
+        vec2 from = drops_x ? a.yz : drops_y ? a.xz : a.xy;
+        vec2 to = drops_x ? b.yz : drops_y ? b.xz : b.xy;
+        // The edges that a ray along the first axis crosses
+        bool crosses = (from.y > 0.0) != (to.y > 0.0);
+        is_in = crosses && (from.x * to.y > to.x * from.y) == (to.y > from.y) ? !is_in : is_in;
+        a = b;
+    }
+    return is_in;
+}
+
 #endif
