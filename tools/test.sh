@@ -67,7 +67,8 @@ batteries+='|masked_shadows|material_frames|meshes|paths|polygon_sampling|proper
 batteries+='|shading|shadow_levels|shadow_motion|shadowed_reference|shape_frames|shape_lights|shape_points'
 batteries+='|shape_properties|shapes|slim_tubes|stability|surfaces|sweep|textured_disks|thin_film|tubes'
 run_assisted() {
-    local left_out="test(/^($batteries)::/) - test(/lists_and_hidden_froxels|openings_clip/)" pushed='test(/pushe/)'
+    local left_out="test(/^($batteries)::/) - test(/lists_and_hidden_froxels|openings_clip/)"
+    local pushed='test(/pushe/)'
     if [[ "${AREALIGHT_LONG:-}" == 1 ]]; then left_out='test(the_guard_outlives_the_optimiser)'; fi # a minute, and no device
     if cargo nextest --version >/dev/null 2>&1; then
         # Of the whole workspace, so that what was built for the step before is what runs

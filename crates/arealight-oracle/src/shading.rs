@@ -35,7 +35,7 @@ use arealight::{
     Horizon, Light, LightFault, LightTable, Lobes, Opening, Profile, Quality, SpecularLobes, TableSample,
 };
 use coat::CoatLobe;
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use half_vectors::HalfVectors;
 use rescattered::Rescattered;
 use sheen::{sheen_truth, with_sheen};
@@ -70,7 +70,7 @@ impl RelativeLight {
             two_sided: light.two_sided,
             image: None,
             profile: light.profile.clone(),
-            opening: light.opening.map(|it| Opening { center: it.center - position, ..it }),
+            opening: light.opening.map(|it| it.moved(&DAffine3::from_translation(-position))),
         }
     }
 

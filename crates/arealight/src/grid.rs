@@ -14,11 +14,8 @@ impl Light {
         let cells = u64::from(columns) * u64::from(rows);
         let is_deep = depth > 0.0 && depth.is_finite();
         if !(1..=4096).contains(&cells) || !is_deep || self.texture.is_some() {
-            let reason = format!(
-                "a grid of {columns} by {rows} cells, {depth} deep: 1 to 4096, above 0, and \
-                                  no texture"
-            );
-            return Err(bad(reason));
+            let limits = "1 to 4096 cells, a depth above 0, and no texture";
+            return Err(bad(format!("a grid of {columns} by {rows} cells, {depth} deep: {limits}")));
         }
         let LightShape::Polygon(_) = self.shape else { return Err(no_parallelogram()) };
         let (u, v) = half_axes(&self.shape)?;

@@ -5,7 +5,7 @@
 
 use crate::LightShape;
 use crate::light_fault::LightFault;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use std::f64::consts::FRAC_PI_2;
 
 /// A parallelogram in an opaque plane, through which a light on one side of it is seen from the other.
@@ -61,6 +61,17 @@ impl Opening {
             axis_v: grown(v, across_u),
             housed: true,
         })
+    }
+
+    /// The opening moved by a transform.
+    #[must_use]
+    pub fn moved(self, by: &DAffine3) -> Self {
+        Self {
+            center: by.transform_point3(self.center),
+            axis_u: by.transform_vector3(self.axis_u),
+            axis_v: by.transform_vector3(self.axis_v),
+            ..self
+        }
     }
 
     /// Checks it, for a light of this shape.

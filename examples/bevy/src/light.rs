@@ -86,12 +86,7 @@ impl AreaLight {
             two_sided: self.two_sided,
             texture: image.map(|layer| LightTexture { layer, uvs: uvs(&self.shape, mirrored) }),
             profile: self.profile.clone(),
-            opening: self.opening.map(|opening| Opening {
-                center: world.transform_point3(opening.center),
-                axis_u: world.transform_vector3(opening.axis_u),
-                axis_v: world.transform_vector3(opening.axis_v),
-                ..opening
-            }),
+            opening: self.opening.map(|opening| opening.moved(&world)),
             shape: moved(&self.shape, &world)?,
         })
     }

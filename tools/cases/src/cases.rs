@@ -17,7 +17,7 @@ use arealight_oracle::visibility::Blocker;
 pub use coat::CaseCoat;
 pub(crate) use fields::json;
 use fields::{Fields, each};
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 pub use material::CaseMaterial;
 use std::sync::Arc;
 
@@ -371,7 +371,7 @@ impl Case {
             two_sided: self.light.two_sided,
             image: None,
             profile: self.light.profile.clone(),
-            opening: self.light.opening.map(|it| Opening { center: it.center - self.position, ..it }),
+            opening: self.light.opening.map(|it| it.moved(&DAffine3::from_translation(-self.position))),
         };
         if let Some(texture) = texture {
             let image = match load(&texture.path) {

@@ -66,14 +66,10 @@ pub(crate) fn behind(light: Light, extras: &Value, node: &PlacedNode) -> Result<
             light.behind_grid(grid.columns, grid.rows, grid.depth * scale)
         }
         Said { doors: None, grid: None, opening: Some(window) } => {
-            let axis = |axis| node.world.transform_vector3(DVec3::from_array(axis));
-            let opening = Opening {
-                center: node.world.transform_point3(DVec3::from_array(window.center)),
-                axis_u: axis(window.axis_u),
-                axis_v: axis(window.axis_v),
-                housed: window.housed,
-            };
-            Ok(vec![Light { opening: Some(opening), ..light }])
+            let [center, axis_u, axis_v] =
+                [window.center, window.axis_u, window.axis_v].map(DVec3::from_array);
+            let opening = Opening { center, axis_u, axis_v, housed: window.housed };
+            Ok(vec![Light { opening: Some(opening.moved(&node.world)), ..light }])
         }
         _ => return Err("extras.arealight: one of doors, grid and opening, not several".into()),
     };

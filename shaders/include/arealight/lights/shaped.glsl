@@ -17,7 +17,7 @@ struct ArealightShapedLight {
     ArealightPolygonLight polygon; // convex, if it has a profile
     vec3 radiance;                 // the polygon's: of the front at a factor of 1, W/(m^2 sr)
     uint profile;                  // the first row, for arealight_bridge_profile, or AREALIGHT_NO_ROW
-    uint opening;                  // likewise (with AREALIGHT_OPENINGS)
+    uint opening;                  // the same of its opening (with AREALIGHT_OPENINGS)
 };
 
 struct ArealightLocalShaped {
