@@ -66,7 +66,7 @@ if [[ "$debug" == true ]]; then
     profile=debug packing=-1n c_options=(--debug)
 else
     profile=release packing=-9n c_options=()
-    cargo build --locked --quiet --release -p arealight-cli --features arealight-cli/view
+    cargo build --locked --quiet --release -p arealight-cli
 fi
 program="${CARGO_TARGET_DIR:-$root/target}/$profile/arealight"
 

@@ -27,7 +27,7 @@ export AREALIGHT_GPU_TEST_LOG="$scratch/gpu-tests"
 : >"$AREALIGHT_GPU_TEST_LOG"
 
 # Everything is built once: with the windows, too
-workspace=(--workspace --features "arealight-cli/view,arealight-examples/window" --locked)
+workspace=(--workspace --features "arealight-examples/window" --locked)
 
 summary=()
 failed=0

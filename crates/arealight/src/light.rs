@@ -3,7 +3,7 @@
 use crate::light_fault::{LightError, LightFault};
 use crate::light_texture::{LightTexture, TextureMap};
 use crate::{Effects, LightShape, Opening, Profile};
-use glam::{DVec3, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
@@ -41,6 +41,19 @@ impl Light {
         } else {
             self.pack_shape(DVec3::ZERO).map(drop)
         }
+    }
+
+    /// The light moved by a transform, its node's say: its [shape](LightShape::moved), what it is seen
+    /// through, and on polygons its image, which a transform that mirrors mirrors. A disk's stays as it is.
+    #[must_use]
+    pub fn moved(&self, by: &DAffine3) -> Self {
+        let mut light = self.clone();
+        light.shape = self.shape.moved(by);
+        light.opening = self.opening.map(|opening| opening.moved(by));
+        if let Some(texture) = light.texture.as_mut().filter(|_| by.matrix3.determinant() < 0.0) {
+            texture.uvs.reverse();
+        }
+        light
     }
 
     /// Checks that a polygon or mesh can be shaded, and maps its texture.
@@ -160,7 +173,8 @@ impl Light {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::PackedLights;
+    use crate::{PackedLights, TubeEnds};
+    use glam::DVec2;
 
     pub(crate) fn arrow() -> Light {
         // A concave quad in the plane z = 2, counter-clockwise from above, so it emits upwards
@@ -175,6 +189,58 @@ pub(crate) mod tests {
             ]),
             ..Light::default()
         }
+    }
+
+    #[test]
+    fn a_light_moves_with_all_that_is_its() {
+        let quad = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(DVec2::from_array);
+        let vertices: Vec<DVec3> = quad.iter().map(|place| place.extend(0.0)).collect();
+        let shown = |uvs| Some(LightTexture { layer: 0, uvs });
+        let uvs: Vec<DVec2> = quad.iter().map(|place| (*place + 1.0) * 0.5).collect();
+        let (axis_u, axis_v) = (DVec3::X, DVec3::Y);
+        let opening = Some(Opening { center: DVec3::Z, axis_u, axis_v, housed: true });
+        let light = |shape| Light { radiance: Vec3::ONE, shape, ..Light::default() };
+        let mesh = LightShape::Mesh { vertices: [&vertices[..], &vertices[..3]].concat(), faces: vec![4, 3] };
+        let lights = [
+            Light { texture: shown(uvs), opening, ..light(LightShape::Polygon(vertices.clone())) },
+            light(mesh),
+            light(LightShape::Disk { center: DVec3::X, axis_u: axis_u * 2.0, axis_v }),
+            light(LightShape::Sphere { center: DVec3::X, radius: 0.5 }),
+            light(LightShape::Tube { p0: DVec3::X, p1: -axis_v, radius: 0.5, ends: TubeEnds::Flat }),
+        ];
+        for (light, mirror) in lights.iter().flat_map(|light| [1.0, -1.0].map(|mirror| (light, mirror))) {
+            let by = DAffine3::from_translation(DVec3::new(3.0, 5.0, 7.0))
+                * DAffine3::from_rotation_x(0.5)
+                * DAffine3::from_scale(DVec3::new(2.0 * mirror, 2.0, 2.0));
+            let moved = light.moved(&by);
+            assert!(moved.validate().is_ok());
+            let (was, is) = (&light.shape, &moved.shape);
+            assert!((is.center() - by.transform_point3(was.center())).length() < 1e-12);
+            // The front goes where the space in front of it goes
+            let front = by.transform_vector3(was.area_vector()) * 2.0;
+            assert!((is.area_vector() - front).length() < 1e-12, "{is:?}");
+            let [radii_was, radii_is] = [was, is].map(|shape| match shape {
+                LightShape::Sphere { radius, .. } | LightShape::Tube { radius, .. } => *radius,
+                _ => 0.0,
+            });
+            assert!((radii_is - 2.0 * radii_was).abs() < 1e-12);
+            // Each vertex still shows what it did
+            if let (Some(before), Some(after)) = (&light.texture, &moved.texture) {
+                let shows = |shape: &LightShape, texture: &LightTexture, place: DVec3| {
+                    let mut all = shape.vertices().iter().zip(&texture.uvs);
+                    all.find(|(vertex, _)| vertex.distance(place) < 1e-9).map(|(_, uv)| *uv)
+                };
+                for vertex in was.vertices() {
+                    let shown = shows(is, after, by.transform_point3(*vertex));
+                    assert_eq!(shown, shows(was, before, *vertex));
+                }
+            }
+            let through = moved.opening.map(|opening| opening.center);
+            assert_eq!(through, light.opening.map(|opening| by.transform_point3(opening.center)));
+        }
+        // Nothing is left of it
+        let gone = lights[3].moved(&DAffine3::from_scale(DVec3::new(1.0, 1.0, 0.0)));
+        assert!(gone.validate().is_err());
     }
 
     #[test]

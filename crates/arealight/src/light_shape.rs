@@ -1,6 +1,6 @@
 //! The shapes of lights: polygons, meshes, disks, spheres and tubes.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use std::f64::consts::PI;
 
 /// How far a vertex of a flat polygon may be off its plane, as a part of its size.
@@ -86,6 +86,49 @@ impl LightShape {
             Self::Polygon(vertices) | Self::Mesh { vertices, .. } => vertices,
             _ => &mut [],
         }
+    }
+
+    /// The shape moved by a transform of any kind, a node's say. Its front stays on its outside where that
+    /// mirrors. What is round stays so: a sphere keeps what its volume becomes, a tube that and its length.
+    /// Where nothing is left of it, what comes back is refused when it is packed.
+    #[must_use]
+    pub fn moved(&self, by: &DAffine3) -> Self {
+        let volume = by.matrix3.determinant();
+        let mirrored = volume < 0.0;
+        let point = |place: DVec3| by.transform_point3(place);
+        let vector = |axis: DVec3| by.transform_vector3(axis);
+        let turn = |outline: &mut [DVec3]| {
+            outline.iter_mut().for_each(|vertex| *vertex = point(*vertex));
+            if mirrored {
+                outline.reverse();
+            }
+        };
+        let mut shape = self.clone();
+        match &mut shape {
+            Self::Polygon(vertices) => turn(vertices),
+            Self::Mesh { vertices, faces } => {
+                let mut rest = vertices.as_mut_slice();
+                for face in faces {
+                    // Faces of more vertices than there are: the light is refused for that
+                    let Some((outline, after)) = rest.split_at_mut_checked(*face as usize) else { break };
+                    turn(outline);
+                    rest = after;
+                }
+            }
+            Self::Disk { center, axis_u, axis_v } => {
+                let side = if mirrored { -1.0 } else { 1.0 };
+                (*center, *axis_u, *axis_v) = (point(*center), vector(*axis_u) * side, vector(*axis_v));
+            }
+            Self::Sphere { center, radius } => {
+                (*center, *radius) = (point(*center), *radius * volume.abs().cbrt());
+            }
+            Self::Tube { p0, p1, radius, .. } => {
+                let longer = vector(*p1 - *p0).length() / (*p1 - *p0).length();
+                (*p0, *p1) = (point(*p0), point(*p1));
+                *radius *= (volume.abs() / longer).sqrt();
+            }
+        }
+        shape
     }
 
     /// Whether it is a polygon or a mesh.

@@ -78,16 +78,24 @@ impl AreaLight {
         image: Option<u32>,
     ) -> Option<Light> {
         let world = DAffine3::from_cols_array(&transform.affine().to_cols_array().map(f64::from));
-        let mirrored = world.matrix3.determinant() < 0.0;
+        let volume = world.matrix3.determinant();
+        let is_flat = |shape: &LightShape| shape.area_vector() == DVec3::ZERO;
+        if match &self.shape {
+            LightShape::Sphere { .. } | LightShape::Tube { .. } => volume == 0.0,
+            shape @ LightShape::Disk { .. } => is_flat(&shape.moved(&world)) && !is_flat(shape),
+            _ => false,
+        } {
+            return None;
+        }
         let LinearRgba { red, green, blue, .. } = self.radiance;
         Some(Light {
             name,
             radiance: Vec3::new(red, green, blue),
             two_sided: self.two_sided,
-            texture: image.map(|layer| LightTexture { layer, uvs: uvs(&self.shape, mirrored) }),
+            texture: image.map(|layer| LightTexture { layer, uvs: uvs(&self.shape, volume < 0.0) }),
             profile: self.profile.clone(),
             opening: self.opening.map(|opening| opening.moved(&world)),
-            shape: moved(&self.shape, &world)?,
+            shape: self.shape.moved(&world),
         })
     }
 }
@@ -112,59 +120,6 @@ fn uvs(shape: &LightShape, mirrored: bool) -> Vec<DVec2> {
         uvs.reverse();
     }
     uvs
-}
-
-/// A shape moved, or `None` where nothing is left of it.
-fn moved(shape: &LightShape, world: &DAffine3) -> Option<LightShape> {
-    let volume = world.matrix3.determinant();
-    let mirrored = volume < 0.0;
-    let point = |place: DVec3| world.transform_point3(place);
-    let vector = |axis: DVec3| world.transform_vector3(axis);
-    let mut shape = shape.clone();
-    match &mut shape {
-        LightShape::Polygon(vertices) => turn(vertices, mirrored, point),
-        LightShape::Mesh { vertices, faces } => {
-            let mut rest = vertices.as_mut_slice();
-            for face in faces {
-                // Faces of more vertices than there are: the light is refused for that
-                let Some((outline, after)) = rest.split_at_mut_checked(*face as usize) else { break };
-                turn(outline, mirrored, point);
-                rest = after;
-            }
-        }
-        LightShape::Disk { center, axis_u, axis_v } => {
-            let had_area = axis_u.cross(*axis_v) != DVec3::ZERO;
-            (*center, *axis_u, *axis_v) = (point(*center), vector(*axis_u), vector(*axis_v));
-            // What it shows is not mirrored then
-            if mirrored {
-                *axis_u = -*axis_u;
-            }
-            if had_area && axis_u.cross(*axis_v) == DVec3::ZERO {
-                return None;
-            }
-        }
-        LightShape::Sphere { .. } | LightShape::Tube { .. } if volume == 0.0 => return None,
-        LightShape::Sphere { center, radius } => {
-            *center = point(*center);
-            *radius *= volume.abs().cbrt();
-        }
-        LightShape::Tube { p0, p1, radius, .. } => {
-            let longer = vector(*p1 - *p0).length() / (*p1 - *p0).length();
-            (*p0, *p1) = (point(*p0), point(*p1));
-            *radius *= (volume.abs() / longer).sqrt();
-        }
-    }
-    Some(shape)
-}
-
-/// Moves an outline, and keeps its front where that goes.
-fn turn(outline: &mut [DVec3], mirrored: bool, point: impl Fn(DVec3) -> DVec3) {
-    for vertex in &mut *outline {
-        *vertex = point(*vertex);
-    }
-    if mirrored {
-        outline.reverse();
-    }
 }
 
 #[cfg(test)]

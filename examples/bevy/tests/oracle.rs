@@ -2,7 +2,7 @@
 
 mod headless;
 
-use arealight::glam::{DVec3, Vec3 as Color3};
+use arealight::glam::{DAffine3, DVec3, Vec3 as Color3};
 use arealight::{Light, LightTable, Quality};
 use arealight_oracle::material::{Material, Surface};
 use arealight_oracle::shading::{RelativeLight, ltc, shape_ltc_on, shape_seen_from};
@@ -84,25 +84,12 @@ fn lights() -> Vec<(&'static str, AreaLight, Transform)> {
 
 /// A light in the world in parts that the oracle knows, under a uniform scale.
 fn in_world(light: &AreaLight, transform: &Transform) -> Vec<Light> {
-    let point = |place: DVec3| {
-        let moved = transform.transform_point(Vec3::from_array(place.as_vec3().to_array()));
-        DVec3::from_array(moved.to_array().map(f64::from))
-    };
-    let outline = |vertices: &[DVec3]| LightShape::Polygon(vertices.iter().copied().map(point).collect());
-    let axis = |axis: DVec3| point(axis) - point(DVec3::ZERO);
-    let scale = f64::from(transform.scale.x);
-    let shapes = match &light.shape {
-        LightShape::Polygon(vertices) => vec![outline(vertices)],
-        LightShape::Mesh { vertices, .. } => vertices.chunks_exact(4).map(outline).collect(),
-        LightShape::Disk { center, axis_u, axis_v } => {
-            vec![LightShape::Disk { center: point(*center), axis_u: axis(*axis_u), axis_v: axis(*axis_v) }]
+    let world = DAffine3::from_cols_array(&transform.compute_affine().to_cols_array().map(f64::from));
+    let shapes = match light.shape.moved(&world) {
+        LightShape::Mesh { vertices, .. } => {
+            vertices.chunks_exact(4).map(|face| LightShape::Polygon(face.to_vec())).collect()
         }
-        LightShape::Sphere { center, radius } => {
-            vec![LightShape::Sphere { center: point(*center), radius: radius * scale }]
-        }
-        LightShape::Tube { p0, p1, radius, ends } => {
-            vec![LightShape::Tube { p0: point(*p0), p1: point(*p1), radius: radius * scale, ends: *ends }]
-        }
+        shape => vec![shape],
     };
     let LinearRgba { red, green, blue, .. } = light.radiance;
     let radiance = Color3::new(red, green, blue);
@@ -111,12 +98,7 @@ fn in_world(light: &AreaLight, transform: &Transform) -> Vec<Light> {
         radiance,
         two_sided: light.two_sided,
         profile: light.profile.clone(),
-        opening: light.opening.map(|opening| Opening {
-            center: point(opening.center),
-            axis_u: axis(opening.axis_u),
-            axis_v: axis(opening.axis_v),
-            ..opening
-        }),
+        opening: light.opening.map(|opening| opening.moved(&world)),
         ..Light::default()
     };
     shapes.into_iter().map(of).collect()

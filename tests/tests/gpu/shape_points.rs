@@ -7,6 +7,7 @@ use arealight_cases::cases::{CaseMaterial, ShapeCase, read_cases};
 use arealight_cases::measure::relative_error;
 use arealight_oracle::shading::shape_ltc_on;
 use arealight_tests::prelude::*;
+use glam::DAffine3;
 use std::collections::HashMap;
 
 const CASES: &str = include_str!("../../data/reference/cases.json");
@@ -49,19 +50,6 @@ fn grown(shape: &LightShape, by: f64) -> LightShape {
         }
         LightShape::Sphere { center, radius } => LightShape::Sphere { center, radius: radius * by },
         LightShape::Tube { p0, p1, radius, ends } => LightShape::Tube { p0, p1, radius: radius * by, ends },
-        LightShape::Polygon(_) | LightShape::Mesh { .. } => panic!("{shape:?} is no case"),
-    }
-}
-
-fn moved(shape: &LightShape, offset: DVec3) -> LightShape {
-    match *shape {
-        LightShape::Disk { center, axis_u, axis_v } => {
-            LightShape::Disk { center: center + offset, axis_u, axis_v }
-        }
-        LightShape::Sphere { center, radius } => LightShape::Sphere { center: center + offset, radius },
-        LightShape::Tube { p0, p1, radius, ends } => {
-            LightShape::Tube { p0: p0 + offset, p1: p1 + offset, radius, ends }
-        }
         LightShape::Polygon(_) | LightShape::Mesh { .. } => panic!("{shape:?} is no case"),
     }
 }
@@ -132,7 +120,7 @@ fn shapes_agree_with_the_reference_and_with_the_oracle() {
         let mut far = points.clone();
         for point in &mut far {
             point.position += offset;
-            point.light.shape = moved(&point.light.shape, offset + slip);
+            point.light.shape = point.light.shape.moved(&DAffine3::from_translation(offset + slip));
         }
         let far = engine.eval_shapes(&far, precise()).unwrap();
         let errors = far.iter().zip(&found).zip(&points);

@@ -66,6 +66,20 @@ impl Canvas {
         });
     }
 
+    /// The picture in a larger size, by its nearest pixels.
+    #[must_use]
+    pub fn enlarged(self, [width, height]: [u32; 2]) -> Self {
+        if self.size() == [width, height] {
+            return self;
+        }
+        let nearest =
+            |at: u32, from: u32, to: u32| (u64::from(at) * u64::from(from) / u64::from(to)) as usize;
+        let rows = (0..height).map(|y| nearest(y, self.height, height) * self.width as usize);
+        let places = rows.flat_map(|row| (0..width).map(move |x| row + nearest(x, self.width, width)));
+        let pixels = places.flat_map(|place| [0, 1, 2].map(|channel| self.pixels[3 * place + channel]));
+        Self { width, height, pixels: pixels.collect() }
+    }
+
     /// Width and height.
     pub const fn size(&self) -> [u32; 2] {
         [self.width, self.height]
@@ -126,6 +140,15 @@ mod tests {
         assert_eq!(picture.get_pixel(12, 15).0, [255, 0, 0]);
         assert_eq!(picture.get_pixel(18, 15).0, [0, 0, 255]);
         assert_eq!(picture.get_pixel(38, 2).0, [255; 3]);
+    }
+
+    #[test]
+    fn pixels_are_enlarged_to_blocks() {
+        let small = Canvas::of_pixels(2, 1, vec![1, 2, 3, 4, 5, 6]);
+        let large = small.enlarged([4, 2]);
+        assert_eq!(large.size(), [4, 2]);
+        assert_eq!(large.bytes()[..12], [1, 2, 3, 1, 2, 3, 4, 5, 6, 4, 5, 6]);
+        assert_eq!(large.bytes()[12..], large.bytes()[..12]);
     }
 
     #[test]

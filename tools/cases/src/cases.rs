@@ -443,17 +443,10 @@ impl Case {
             return Err(Unsupported { reason });
         }
         let shape = match &self.light.shape {
-            CaseShape::Polygon { vertices, .. } => {
-                LightShape::Polygon(vertices.iter().map(|v| *v - self.position).collect())
-            }
-            &CaseShape::Disk { center, axis_u, axis_v, .. } => {
-                LightShape::Disk { center: center - self.position, axis_u, axis_v }
-            }
-            &CaseShape::Sphere { center, radius } => {
-                LightShape::Sphere { center: center - self.position, radius }
-            }
+            CaseShape::Polygon { vertices, .. } => LightShape::Polygon(vertices.clone()),
+            &CaseShape::Disk { center, axis_u, axis_v, .. } => LightShape::Disk { center, axis_u, axis_v },
+            &CaseShape::Sphere { center, radius } => LightShape::Sphere { center, radius },
             &CaseShape::Cylinder { p0, p1, radius, caps } => {
-                let (p0, p1) = (p0 - self.position, p1 - self.position);
                 // It emits outwards, whatever is said of its sides
                 let ends = if caps { TubeEnds::Flat } else { TubeEnds::Open };
                 LightShape::Tube { p0, p1, radius, ends }
@@ -480,6 +473,7 @@ impl Case {
             opening: self.light.opening,
             shape,
         };
+        let light = light.moved(&DAffine3::from_translation(-self.position));
         light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;
         Ok((light, image))
     }

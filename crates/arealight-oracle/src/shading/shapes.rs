@@ -13,7 +13,7 @@ use crate::texture::Texture;
 use crate::tube::{self, Ends, Tube};
 use arealight::table::share_above_surface;
 use arealight::{Horizon, Light, LightShape, LightTable, LightTexture, Quality, TubeEnds};
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -94,16 +94,9 @@ fn uncoated_truth(
 /// [`shape_truth`] take it. Polygons and meshes stay as they are: [`RelativeLight`](super::RelativeLight) is
 /// theirs.
 pub fn shape_seen_from(light: &Light, point: DVec3) -> Light {
-    let moved = |p: DVec3| p - point;
-    let shape = match light.shape.clone() {
-        LightShape::Disk { center, axis_u, axis_v } => {
-            LightShape::Disk { center: moved(center), axis_u, axis_v }
-        }
-        LightShape::Sphere { center, radius } => LightShape::Sphere { center: moved(center), radius },
-        LightShape::Tube { p0, p1, radius, ends } => {
-            LightShape::Tube { p0: moved(p0), p1: moved(p1), radius, ends }
-        }
-        polygonal => polygonal,
+    let shape = match &light.shape {
+        polygonal @ (LightShape::Polygon(_) | LightShape::Mesh { .. }) => polygonal.clone(),
+        round => round.moved(&DAffine3::from_translation(-point)),
     };
     Light { shape, ..light.clone() }
 }

@@ -8,7 +8,7 @@ use crate::lights::{LightArguments, scene_name};
 use crate::output::{self, print};
 use crate::picture::Exposure;
 use crate::progress;
-use crate::view::{Engines, Mode, Script, Shown, State, Viewer, paint};
+use crate::view::{Engines, Interface, Mode, Script, Seen, Shown, State, Viewer, paint, show};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let viewer = Viewer::new(&engines, scene, arguments.size).map_err(|error| gpu::failure(error, &path))?;
     match (&arguments.record, script) {
         (Some(folder), Some(script)) => record(arguments, viewer, state, &script, folder, &path),
-        (_, script) => show(arguments, viewer, state, script.as_ref(), &path),
+        (_, script) => show(viewer, state, arguments.size, arguments.samples, script.as_ref(), &path),
     }
 }
 
@@ -117,18 +117,27 @@ fn record(
     let step = 1.0 / f64::from(arguments.rate);
     let count = (script.seconds() / step).ceil() as u32 + 1;
     let bar = progress::bar(u64::from(count), "frames");
+    let mut interface = Interface::new(1.0);
     let (mut frames, mut said): (Vec<Canvas>, Vec<Value>) = (vec![], vec![]);
     for index in 0..count {
         // What is at time 0 comes before the first frame
         let now = f64::from(index) * step;
         let before = if index == 0 { -1.0 } else { now - step };
         for event in script.between(before, now) {
-            state.apply(event, viewer.scene(), aspect);
+            if !interface.takes(&event, arguments.size) {
+                state.apply(event, viewer.scene(), aspect);
+            }
         }
         state.save = false; // every frame is
-        let shown = viewer.draw(&state, arguments.samples).map_err(|error| gpu::failure(error, scene))?;
+        viewer.draw(&state, arguments.samples).map_err(|error| gpu::failure(error, scene))?;
+        while viewer.measures(&state) {
+            viewer.draw(&state, 0).map_err(|error| gpu::failure(error, scene))?;
+        }
+        let shown = viewer.shown(&state);
         said.push(summary(&state, &shown, now));
-        let frame = paint(&state, &if arguments.times { shown } else { shown.without_times() });
+        let shown = if arguments.times { shown } else { shown.without_times() };
+        let mut frame = paint(&state, &shown);
+        interface.draw(&mut frame, &mut state, &Seen { scene: viewer.scene(), shown: &shown });
         frame.save_png(&folder.join(format!("frame-{index:04}.png")))?;
         frames.push(frame);
         bar.inc(1);
@@ -175,23 +184,4 @@ fn summary(state: &State, shown: &Shown<'_>, seconds: f64) -> Value {
         "truth_noise": distance.map(|distance| distance.noise),
         "costs": costs,
     })
-}
-
-#[cfg(feature = "view")]
-fn show(
-    arguments: &Arguments,
-    viewer: Viewer<'_>,
-    state: State,
-    script: Option<&Script>,
-    scene: &Path,
-) -> Result<ExitCode, Failure> {
-    crate::view::show(viewer, state, arguments.size, arguments.samples, script, scene)
-}
-
-#[cfg(not(feature = "view"))]
-fn show(_: &Arguments, _: Viewer<'_>, _: State, _: Option<&Script>, _: &Path) -> Result<ExitCode, Failure> {
-    let message = "this program was built without a window: build it with --features view, or give --record \
-    and --script"
-        .to_owned();
-    Err(Failure::Argument { argument: "view", message })
 }

@@ -1,9 +1,10 @@
 //! Lamps that are picked and moved: their lights, and the triangles that look like them.
 
-use arealight::LightShape;
+use arealight::{Light, LightShape};
 use arealight_scene::rays::intersect_vertices;
 use arealight_scene::{Camera, Scene};
-use glam::DVec3;
+use glam::{DAffine3, DQuat, DVec3, Vec3};
+use std::f64::consts::TAU;
 
 /// How near to the middle of a lamp that no mesh is a click picks it, in heights of the picture.
 const NEAR: f64 = 0.03;
@@ -42,35 +43,124 @@ pub fn pick(scene: &Scene, camera: &Camera, heights: [f64; 2]) -> Option<(usize,
     Some((lamp, distance))
 }
 
-/// Moves each lamp of a scene by an offset of its own.
-pub fn shift(scene: &mut Scene, offsets: &[DVec3]) {
-    for (lamp, offset) in scene.lamps.clone().iter().zip(offsets) {
-        if *offset == DVec3::ZERO {
-            continue;
+/// What a person has made of a lamp.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edit {
+    pub is_on: bool,
+    /// In the world.
+    pub offset: DVec3,
+    /// Degrees about the vertical, and then about the horizontal that is across its front.
+    pub turn: [f64; 2],
+    /// A factor, above 0.
+    pub size: f64,
+    /// Of its radiance, a factor of 2 each.
+    pub stops: f32,
+    /// What its radiance is multiplied with, linear.
+    pub color: [f32; 3],
+}
+
+impl Edit {
+    /// A lamp as it was.
+    pub const NONE: Self =
+        Self { is_on: true, offset: DVec3::ZERO, turn: [0.0; 2], size: 1.0, stops: 0.0, color: [1.0; 3] };
+
+    /// What the lamp's radiance is multiplied with.
+    fn factor(&self) -> Vec3 {
+        if self.is_on { Vec3::from(self.color) * self.stops.exp2() } else { Vec3::ZERO }
+    }
+
+    /// Turns and grows about the middle of a light, and moves.
+    fn transform(&self, light: &Light) -> DAffine3 {
+        let middle = light.shape.center();
+        let across = DVec3::Y.cross(front(&light.shape)).try_normalize().unwrap_or(DVec3::X);
+        let [turn, tilt] = self.turn.map(f64::to_radians);
+        DAffine3::from_translation(middle + self.offset)
+            * DAffine3::from_quat(DQuat::from_rotation_y(turn) * DQuat::from_axis_angle(across, tilt))
+            * DAffine3::from_scale(DVec3::splat(self.size))
+            * DAffine3::from_translation(-middle)
+    }
+}
+
+/// Where a shape faces, not unit; across a tube.
+fn front(shape: &LightShape) -> DVec3 {
+    match shape {
+        LightShape::Disk { axis_u, axis_v, .. } => axis_u.cross(*axis_v),
+        LightShape::Tube { p0, p1, .. } => DVec3::Y.cross(*p1 - *p0),
+        shape => match shape.vertices() {
+            [a, b, c, ..] => (b - a).cross(c - a),
+            _ => DVec3::Z,
+        },
+    }
+}
+
+/// Makes of each lamp of a scene what a person wants.
+pub fn edit(scene: &mut Scene, edits: &[Edit]) {
+    for (lamp, edit) in scene.lamps.clone().iter().zip(edits).filter(|(_, edit)| **edit != Edit::NONE) {
+        let lights = scene.lights.get_mut(lamp.lights.clone()).unwrap_or_default();
+        let transform = lights.first().map_or(DAffine3::IDENTITY, |light| edit.transform(light));
+        let factor = edit.factor();
+        for light in lights {
+            *light = Light { radiance: light.radiance * factor, ..light.moved(&transform) };
         }
-        for light in scene.lights.get_mut(lamp.lights.clone()).into_iter().flatten() {
-            match &mut light.shape {
-                LightShape::Polygon(vertices) | LightShape::Mesh { vertices, .. } => {
-                    for vertex in vertices {
-                        *vertex += *offset;
-                    }
-                }
-                LightShape::Disk { center, .. } | LightShape::Sphere { center, .. } => *center += *offset,
-                LightShape::Tube { p0, p1, .. } => {
-                    *p0 += *offset;
-                    *p1 += *offset;
-                }
-            }
-        }
+        let mut bright: Option<(u32, u32)> = None;
         for triangle in scene.triangles.get_mut(lamp.triangles.clone()).into_iter().flatten() {
-            triangle.positions.iter_mut().for_each(|position| *position += *offset);
+            triangle.positions = triangle.positions.map(|place| transform.transform_point3(place));
+            triangle.normals = triangle
+                .normals
+                .map(|normal| transform.transform_vector3(normal.as_dvec3()).normalize_or_zero().as_vec3());
+            // What it looks like is its material's, which others may have too
+            let (_, own) = bright.filter(|(of, _)| *of == triangle.material).unwrap_or_else(|| {
+                let mut material = scene.materials[triangle.material as usize].clone();
+                material.emission *= factor;
+                scene.materials.push(material);
+                (triangle.material, scene.materials.len() as u32 - 1)
+            });
+            bright = Some((triangle.material, own));
+            triangle.material = own;
         }
+    }
+}
+
+/// Where a lamp is seen: the box about it, from its upper left corner to its lower right one, in heights of the
+/// picture from the middle. None where a part of it is not in front of the camera.
+pub fn seen(scene: &Scene, camera: &Camera, lamp: usize) -> Option<[[f64; 2]; 2]> {
+    let lights = scene.lights.get(scene.lamps.get(lamp)?.lights.clone())?;
+    let mut box_seen = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for point in lights.iter().flat_map(|light| extremes(&light.shape, camera)) {
+        let to = point - camera.position;
+        let depth = 2.0 * camera.half_height * to.dot(camera.forward);
+        if depth <= 0.0 {
+            return None;
+        }
+        for (axis, side) in [to.dot(camera.right), -to.dot(camera.up)].into_iter().enumerate() {
+            box_seen[0][axis] = box_seen[0][axis].min(side / depth);
+            box_seen[1][axis] = box_seen[1][axis].max(side / depth);
+        }
+    }
+    (box_seen[0][0] <= box_seen[1][0]).then_some(box_seen)
+}
+
+/// Points about a shape, between which it is seen.
+fn extremes(shape: &LightShape, camera: &Camera) -> Vec<DVec3> {
+    let round = |center: DVec3, radius: f64| {
+        [camera.right, -camera.right, camera.up, -camera.up].map(|axis| center + axis * radius)
+    };
+    match shape {
+        LightShape::Disk { center, axis_u, axis_v } => {
+            let angles = (0..16).map(|i| f64::from(i) * TAU / 16.0);
+            angles.map(|angle| *center + *axis_u * angle.cos() + *axis_v * angle.sin()).collect()
+        }
+        LightShape::Sphere { center, radius } => round(*center, *radius).to_vec(),
+        LightShape::Tube { p0, p1, radius, .. } => [round(*p0, *radius), round(*p1, *radius)].concat(),
+        shape => shape.vertices().to_vec(),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use arealight_scene::Triangle;
+    use std::path::Path;
 
     fn room() -> Scene {
         Scene::from_bytes(include_bytes!("../../../../scenes/room.glb"), "room").unwrap()
@@ -123,23 +213,61 @@ mod tests {
         assert_eq!(pick(&scene, &camera, [at[0] + 0.1, at[1]]), None);
     }
 
+    /// Every kind of light, turned, grown, dimmed and moved.
     #[test]
-    fn lamps_move_with_what_they_look_like() {
-        let before = room();
-        let mut after = before.clone();
-        let offsets: Vec<DVec3> = (0..before.lamps.len()).map(|i| DVec3::new(0.0, i as f64, -0.5)).collect();
-        shift(&mut after, &offsets);
-        for (lamp, offset) in before.lamps.iter().zip(offsets) {
-            for light in lamp.lights.clone() {
-                let [was, is] = [&before, &after].map(|scene| scene.lights[light].shape.center());
-                assert!((is - was - offset).length() < 1e-9);
+    fn lamps_change_with_what_they_look_like() {
+        for file in ["room", "shapes", "set"] {
+            let path = format!("{}/../../scenes/{file}.glb", env!("CARGO_MANIFEST_DIR"));
+            let before = Scene::load(Path::new(&path)).unwrap();
+            let mut after = before.clone();
+            let one =
+                Edit { turn: [90.0, 10.0], size: 2.0, stops: -1.0, color: [1.0, 0.5, 0.0], ..Edit::NONE };
+            let edits: Vec<Edit> = (0..before.lamps.len())
+                .map(|i| Edit { offset: DVec3::new(0.0, i as f64, -0.5), is_on: i != 1, ..one })
+                .collect();
+            edit(&mut after, &edits);
+            for (index, (lamp, edited)) in before.lamps.iter().zip(&edits).enumerate() {
+                let factor = if index == 1 { Vec3::ZERO } else { Vec3::new(0.5, 0.25, 0.0) };
+                let first = lamp.lights.start;
+                let middles = [&before, &after].map(|scene| scene.lights[first].shape.center());
+                assert!((middles[1] - middles[0] - edited.offset).length() < 1e-9, "{file} {index}");
+                for light in lamp.lights.clone() {
+                    let [was, is] = [&before, &after].map(|scene| &scene.lights[light]);
+                    assert_eq!(is.radiance, was.radiance * factor);
+                    assert!(is.validate().is_ok());
+                }
+                for triangle in lamp.triangles.clone() {
+                    let [was, is] = [&before, &after].map(|scene| scene.triangles[triangle]);
+                    let [far, near] = [is.positions[2] - middles[1], was.positions[2] - middles[0]];
+                    assert!((far.length() - 2.0 * near.length()).abs() < 1e-6, "{file} {index}");
+                    let emission =
+                        |scene: &Scene, of: Triangle| scene.materials[of.material as usize].emission;
+                    assert_eq!(emission(&after, is), emission(&before, was) * factor);
+                }
             }
-            for triangle in lamp.triangles.clone() {
-                let [was, is] = [&before, &after].map(|scene| scene.triangles[triangle].positions[2]);
-                assert!((is - was - offset).length() < 1e-9);
-            }
+            let still =
+                |scene: &Scene| scene.triangles.iter().filter(|t| !t.lamp).copied().collect::<Vec<_>>();
+            assert_eq!(still(&before), still(&after));
+            // As they were: nothing is changed
+            let mut same = before.clone();
+            edit(&mut same, &vec![Edit::NONE; before.lamps.len()]);
+            assert_eq!((same.lights, same.triangles), (before.lights, before.triangles));
         }
-        let still = |scene: &Scene| scene.triangles.iter().filter(|t| !t.lamp).copied().collect::<Vec<_>>();
-        assert_eq!(still(&before), still(&after));
+    }
+
+    #[test]
+    fn the_box_about_a_lamp_holds_it() {
+        let scene = room();
+        let camera = scene.camera(None, 1.5).unwrap();
+        let seen_lamps = (0..scene.lamps.len()).filter_map(|lamp| Some((lamp, seen(&scene, &camera, lamp)?)));
+        let mut count = 0;
+        for (lamp, [low, high]) in seen_lamps {
+            let at = place(&camera, scene.lights[scene.lamps[lamp].lights.start].shape.center());
+            assert!((0..2).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis]), "{lamp}");
+            count += 1;
+        }
+        assert!(count > 1);
+        let behind = Camera { forward: -camera.forward, ..camera };
+        assert!((0..scene.lamps.len()).any(|lamp| seen(&scene, &behind, lamp).is_none()));
     }
 }

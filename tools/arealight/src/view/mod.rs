@@ -1,18 +1,21 @@
 //! The viewer: what a person does to a scene, and what is drawn of it. A window, or a recording without one,
 //! gives the events and shows the frames: `state` knows no device, `viewer` no event.
 
+mod costs;
+mod interface;
 mod lamps;
 mod orbit;
 mod paint;
+mod panel;
 mod script;
 mod state;
 mod viewer;
-#[cfg(feature = "view")]
 mod window;
 
+pub use interface::Interface;
 pub use paint::paint;
+pub use panel::Seen;
 pub use script::Script;
 pub use state::{Mode, State};
 pub use viewer::{Engines, Shown, Viewer};
-#[cfg(feature = "view")]
 pub use window::show;

@@ -1,11 +1,10 @@
 //! What a person has chosen, and how keys and the pointer change it. Nothing here draws.
 
-use super::lamps;
+use super::lamps::{self, Edit};
 use super::orbit::Orbit;
 use crate::picture::MAX_STOPS;
 use arealight::Level;
 use arealight_scene::{Camera, Scene, SceneFog};
-use glam::DVec3;
 use std::str::FromStr;
 
 /// What is shown.
@@ -40,7 +39,7 @@ pub enum Key {
     /// Of fog, by a factor.
     Density(f64),
     Costs,
-    Help,
+    Panel,
     Save,
     Quit,
     /// Everything as it was.
@@ -66,7 +65,7 @@ pub const KEYS: [(&str, &str); 12] = [
     ("arrows", "turn the camera, as dragging does; the wheel goes nearer"),
     ("r", "everything as it was"),
     ("p", "save the picture"),
-    ("h, escape", "this help; quit"),
+    ("h, escape", "this panel; quit"),
 ];
 
 impl FromStr for Key {
@@ -81,7 +80,7 @@ impl FromStr for Key {
             "," => Self::Density(0.8),
             "." => Self::Density(1.25),
             "c" => Self::Costs,
-            "h" => Self::Help,
+            "h" => Self::Panel,
             "p" => Self::Save,
             "r" => Self::Reset,
             "q" | "escape" => Self::Quit,
@@ -142,31 +141,33 @@ pub struct State {
     pub divider: f64,
     /// In stops.
     pub exposure: f32,
-    /// Of every surface, in [0, 1]; as the scene says where none.
-    pub roughness: Option<f32>,
+    /// Added to the roughness of every surface.
+    pub rougher: f32,
     /// Whether lights have shadows.
     pub shadows: bool,
     /// Whether there is fog.
     pub is_foggy: bool,
     /// What it is where there is some.
     pub fog: SceneFog,
-    /// Whether keys are explained.
-    pub help: bool,
+    /// Whether the panel is shown.
+    pub panel: bool,
     /// Whether the costs of levels and effects are to be shown.
     pub costs: bool,
     /// The lamp that was picked last, of [`Scene::lamps`].
     pub picked: Option<usize>,
-    /// By how much each lamp was moved.
-    pub offsets: Vec<DVec3>,
+    /// The lamp under the pointer.
+    pub hovered: Option<usize>,
+    /// What became of each lamp.
+    pub lamps: Vec<Edit>,
     /// The picture is to be saved.
     pub save: bool,
     /// There is nothing more to show.
     pub quit: bool,
     /// Whether there is a yardstick for the scene's lights.
-    has_yardstick: bool,
+    pub has_yardstick: bool,
     home: Orbit,
     first_exposure: f32,
-    first_fog: SceneFog,
+    pub(super) first_fog: SceneFog,
     pointer: [f64; 2],
     grip: Grip,
 }
@@ -187,14 +188,15 @@ impl State {
             mode: Mode::Picture,
             divider: 0.5,
             exposure,
-            roughness: None,
+            rougher: 0.0,
             shadows: true,
             is_foggy: scene.fog.is_some(),
             fog,
-            help: false,
+            panel: false,
             costs: false,
             picked: None,
-            offsets: vec![DVec3::ZERO; scene.lamps.len()],
+            hovered: None,
+            lamps: vec![Edit::NONE; scene.lamps.len()],
             save: false,
             quit: false,
             has_yardstick,
@@ -221,6 +223,12 @@ impl State {
         self.mode != Mode::Wipe(Partner::Yardstick) && !self.costs
     }
 
+    /// Whether both show the same of the scene, whatever is shown beside it.
+    pub fn is_seen_as(&self, other: &Self) -> bool {
+        let same = |state: &Self| (state.orbit, state.rougher, state.fog(), state.shadows);
+        same(self) == same(other) && self.lamps == other.lamps
+    }
+
     /// Whether the truth is shown, or what is far from it.
     pub fn needs_truth(&self) -> bool {
         self.costs || matches!(self.mode, Mode::Wipe(Partner::Truth) | Mode::Error)
@@ -238,6 +246,9 @@ impl State {
             Event::Move(at) => {
                 let drag = [(at[0] - self.pointer[0]) * aspect, at[1] - self.pointer[1]];
                 self.pointer = at;
+                if self.grip == Grip::Nothing {
+                    self.hovered = self.lamp_at(at, scene, aspect).map(|(lamp, _)| lamp);
+                }
                 self.drag(drag);
             }
             Event::Release => self.grip = Grip::Nothing,
@@ -246,7 +257,7 @@ impl State {
                 Grip::Lamp(lamp, distance) => {
                     let forward = self.orbit.camera().forward;
                     let farther = distance * 0.05 * steps;
-                    self.offsets[lamp] += forward * farther;
+                    self.lamps[lamp].offset += forward * farther;
                     self.grip = Grip::Lamp(lamp, distance + farther);
                 }
                 _ => self.orbit.approach(steps),
@@ -254,7 +265,7 @@ impl State {
         }
     }
 
-    fn press_key(&mut self, key: Key) {
+    pub(super) fn press_key(&mut self, key: Key) {
         match key {
             Key::Level(level) => self.level = level,
             Key::Wipe => {
@@ -274,18 +285,16 @@ impl State {
                 self.fog.density = (self.fog.density * factor).clamp(1e-3 * first, 1e3 * first);
             }
             Key::Costs => self.costs = !self.costs,
-            Key::Help => self.help = !self.help,
+            Key::Panel => self.panel = !self.panel,
             Key::Save => self.save = true,
             Key::Quit => self.quit = true,
             Key::Reset => {
-                (self.orbit, self.exposure, self.roughness) = (self.home, self.first_exposure, None);
+                (self.orbit, self.exposure, self.rougher) = (self.home, self.first_exposure, 0.0);
                 self.fog = self.first_fog;
-                self.offsets.fill(DVec3::ZERO);
+                self.lamps.fill(Edit::NONE);
             }
             Key::Exposure(step) => self.exposure = (self.exposure + step).clamp(-MAX_STOPS, MAX_STOPS),
-            Key::Roughness(step) => {
-                self.roughness = Some((self.roughness.unwrap_or(0.5) + step).clamp(0.0, 1.0));
-            }
+            Key::Roughness(step) => self.rougher = (self.rougher + step).clamp(-1.0, 1.0),
             Key::Turn(drag) => self.orbit.turn(drag),
         }
     }
@@ -298,14 +307,18 @@ impl State {
         if matches!(self.mode, Mode::Wipe(_)) && (at[0] - self.divider).abs() < HOLD {
             return Grip::Divider;
         }
-        let heights = [(at[0] - 0.5) * aspect, at[1] - 0.5];
-        match lamps::pick(scene, &self.orbit.camera(), heights) {
+        match self.lamp_at(at, scene, aspect) {
             Some((lamp, distance)) => {
                 self.picked = Some(lamp);
                 Grip::Lamp(lamp, distance)
             }
             None => Grip::View,
         }
+    }
+
+    /// The lamp that is seen at a place, and how far along the view.
+    fn lamp_at(&self, at: [f64; 2], scene: &Scene, aspect: f64) -> Option<(usize, f64)> {
+        lamps::pick(scene, &self.orbit.camera(), [(at[0] - 0.5) * aspect, at[1] - 0.5])
     }
 
     /// Moves what is held by a drag in heights of the picture.
@@ -315,7 +328,7 @@ impl State {
             Grip::View => self.orbit.turn(drag),
             Grip::Slide => self.orbit.slide(drag),
             Grip::Divider => self.divider = self.pointer[0].clamp(0.0, 1.0),
-            Grip::Lamp(lamp, distance) => self.offsets[lamp] += self.orbit.offset(drag, distance),
+            Grip::Lamp(lamp, distance) => self.lamps[lamp].offset += self.orbit.offset(drag, distance),
         }
     }
 }
@@ -358,7 +371,7 @@ mod tests {
         assert_eq!((clear, keys(&["f", "w", "w"]).fog(), keys(&["f", "f"]).fog()), (None, None, None));
         assert!(keys(&["f", ","]).fog().unwrap().density < foggy.density);
         assert_eq!(keys(&["f", ".", "r"]).fog(), Some(foggy));
-        assert_eq!(keys(&["]"]).roughness, Some(0.55));
+        assert_eq!((keys(&["]"]).rougher, keys(&["[", "["]).rougher), (0.05, -0.1));
         assert_eq!(keys(&["]", "left", "+", "r"]), keys(&[]));
         assert!("f13".parse::<Key>().unwrap_err().contains("'f13'") && "7".parse::<Key>().is_err());
     }
@@ -390,18 +403,19 @@ mod tests {
         state.apply(Event::Move([lit[0] + 0.1, lit[1]]), &scene, ASPECT);
         assert_eq!(state.picked, Some(lamp));
         let expected = camera.right * (0.1 * ASPECT * 2.0 * camera.half_height * distance);
-        assert!((state.offsets[lamp] - expected).length() < 1e-9);
+        assert!((state.lamps[lamp].offset - expected).length() < 1e-9);
         assert_eq!(state.orbit, state.home);
         state.apply(Event::Wheel(1.0), &scene, ASPECT);
-        assert!((state.offsets[lamp] - expected).dot(camera.forward) > 0.0);
+        assert!((state.lamps[lamp].offset - expected).dot(camera.forward) > 0.0);
         state.apply(Event::Release, &scene, ASPECT);
-        let offsets = state.offsets.clone();
+        let lamps = state.lamps.clone();
 
         state.apply(Event::Move([0.5, 0.5]), &scene, ASPECT);
-        assert_eq!((state.orbit, &state.offsets), (state.home, &offsets), "nothing is held");
+        assert_eq!((state.orbit, &state.lamps), (state.home, &lamps), "nothing is held");
+        assert_eq!(state.hovered, on(&[0.5, 0.5]).map(|(lamp, _)| lamp));
         state.apply(Event::Press { at: dark, second: false }, &scene, ASPECT);
         state.apply(Event::Move([dark[0] + 0.1, dark[1]]), &scene, ASPECT);
-        assert_eq!(state.offsets, offsets);
+        assert_eq!(state.lamps, lamps);
         assert_ne!(state.orbit, state.home);
     }
 

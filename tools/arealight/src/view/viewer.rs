@@ -1,11 +1,13 @@
 //! A scene on the device, drawn as the state says: what has changed since the last frame alone is done again.
 
+use super::costs::{Cost, Tried};
+use super::lamps::{self, Edit};
+use super::orbit::Orbit;
 use super::state::{Mode, Partner, State};
-use super::{lamps, orbit::Orbit};
 use crate::means::{Distance, Means};
 use crate::shadows::Shadows;
 use arealight::plan::{MediumOptions, ShadeOptions};
-use arealight::{Effects, Level, Quality};
+use arealight::{Effects, Level};
 use arealight_benches::ladder::{SHADE_YARDSTICK, yardstick_for};
 use arealight_benches::published;
 use arealight_engine::{Engine, EngineError, Fog, FogView, Reference, SceneRenderer, ShadowedView};
@@ -40,16 +42,16 @@ impl Engines {
     }
 }
 
-/// Where the lamps are, and how rough surfaces are.
+/// What lamps are, and how rough surfaces are.
 #[derive(Debug, Clone, PartialEq)]
 struct Placed {
-    offsets: Vec<DVec3>,
-    roughness: Option<f32>,
+    lamps: Vec<Edit>,
+    rougher: f32,
 }
 
 /// What a picture is of: another needs other pixels.
 #[derive(Debug, Clone, PartialEq)]
-struct Seen {
+pub(super) struct Seen {
     placed: Placed,
     orbit: Orbit,
     shadows: bool,
@@ -84,7 +86,7 @@ pub struct Viewer<'a> {
     scene: Scene,
     placed: Placed,
     buffers: SceneBuffers,
-    renderer: SceneRenderer<'a>,
+    pub(super) renderer: SceneRenderer<'a>,
     yardstick: Option<SceneRenderer<'a>>,
     shadowed: Option<(Level, Vec<ShadowedView>)>,
     /// With shadows or without.
@@ -99,25 +101,9 @@ pub struct Viewer<'a> {
     ours: Option<Drawn>,
     theirs: Option<Drawn>,
     truth: Option<(Seen, Means)>,
-    tried: Option<(Seen, Vec<Tried>)>,
-}
-
-/// What a level, or every effect but one, was found to take.
-struct Tried {
-    name: String,
-    milliseconds: Option<f64>,
-    radiance: Vec<DVec3>,
-}
-
-/// What a level costs, or every effect but one.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Cost {
-    /// The level's name, or "without" and the effect's.
-    pub name: String,
-    /// Milliseconds of shading.
-    pub milliseconds: Option<f64>,
-    /// How far it is from the truth.
-    pub distance: Option<Distance>,
+    pub(super) tried: Option<(Seen, Vec<Tried>)>,
+    /// Levels that were shaded before, with shadows or without: their pipelines are compiled.
+    compiled: Vec<(Level, bool)>,
 }
 
 /// What there is to show.
@@ -138,8 +124,10 @@ pub struct Shown<'v> {
     pub truth: Option<(u32, Option<Distance>)>,
     /// The yardstick's name.
     pub yardstick: &'static str,
-    /// What each level costs, and every effect but one, where that is asked for.
+    /// What each level costs, and every effect but one, where that is asked for, as far as it is measured.
     pub costs: Vec<Cost>,
+    /// How many of the costs are measured, and how many there will be.
+    pub measured: [usize; 2],
 }
 
 impl Shown<'_> {
@@ -151,16 +139,13 @@ impl Shown<'_> {
     }
 }
 
-/// Runs whose fastest is a cost.
-const COST_RUNS: usize = 3;
-
 impl<'a> Viewer<'a> {
     /// Uploads a scene.
     ///
     /// # Errors
     /// [`EngineError`] names what is too large for the device.
     pub fn new(engines: &'a Engines, scene: Scene, size: [u32; 2]) -> Result<Self, EngineError> {
-        let placed = Placed { offsets: vec![DVec3::ZERO; scene.lamps.len()], roughness: None };
+        let placed = Placed { lamps: vec![Edit::NONE; scene.lamps.len()], rougher: 0.0 };
         let (buffers, renderer, yardstick) = upload(engines, &scene, size)?;
         Ok(Self {
             engines,
@@ -181,6 +166,7 @@ impl<'a> Viewer<'a> {
             theirs: None,
             truth: None,
             tried: None,
+            compiled: vec![],
         })
     }
 
@@ -190,15 +176,20 @@ impl<'a> Viewer<'a> {
     }
 
     /// Whether the next picture differs, although nobody does anything: shadows or the truth converge.
-    #[cfg(feature = "view")]
     pub fn goes_on(&self, state: &State) -> bool {
         let truth_samples = self.truth.as_ref().map_or(0, |(_, truth)| truth.samples());
-        state.needs_truth() && truth_samples < MOST_SAMPLES
+        self.measures(state)
+            || state.needs_truth() && truth_samples < MOST_SAMPLES
             || self.ours.as_ref().is_some_and(|drawn| !drawn.is_done())
     }
 
+    /// Whether costs are asked for, and not all of them measured.
+    pub fn measures(&self, state: &State) -> bool {
+        let [tried, trials] = self.measured();
+        state.costs && tried < trials
+    }
+
     /// Draws in another size from now on.
-    #[cfg(feature = "view")]
     pub fn resize(&mut self, size: [u32; 2]) -> Result<(), EngineError> {
         if size == self.size {
             return Ok(());
@@ -208,22 +199,26 @@ impl<'a> Viewer<'a> {
     }
 
     /// Draws what the state asks for, and adds `samples` a pixel to the truth where that is a part of it.
-    pub fn draw(&mut self, state: &State, samples: u32) -> Result<Shown<'_>, EngineError> {
+    pub fn draw(&mut self, state: &State, samples: u32) -> Result<(), EngineError> {
         self.place(state)?;
-        let (placed, shadows, fog) = (self.placed.clone(), state.has_shadows(), state.fog());
-        let seen = Seen { placed, orbit: state.orbit, shadows, fog };
+        let seen = self.seen(state);
         self.look(state.orbit)?;
         self.draw_ours(&seen, state.level)?;
         if state.mode == Mode::Wipe(Partner::Yardstick) {
             self.draw_theirs(&seen)?;
         }
-        if state.needs_truth() {
+        if state.needs_truth() && samples > 0 {
             self.add_truth(&seen, samples)?;
         }
         if state.costs {
-            self.try_levels_and_effects(&seen)?;
+            self.try_next(&seen)?;
         }
-        Ok(self.shown(state, &seen))
+        Ok(())
+    }
+
+    fn seen(&self, state: &State) -> Seen {
+        let (placed, shadows, fog) = (self.placed.clone(), state.has_shadows(), state.fog());
+        Seen { placed, orbit: state.orbit, shadows, fog }
     }
 
     fn upload(&mut self) -> Result<(), EngineError> {
@@ -235,16 +230,15 @@ impl<'a> Viewer<'a> {
 
     /// Moves lamps, and makes surfaces as rough as the state says.
     fn place(&mut self, state: &State) -> Result<(), EngineError> {
-        let placed = Placed { offsets: state.offsets.clone(), roughness: state.roughness };
+        let placed = Placed { lamps: state.lamps.clone(), rougher: state.rougher };
         if placed == self.placed {
             return Ok(());
         }
         let mut scene = self.original.clone();
-        lamps::shift(&mut scene, &placed.offsets);
-        if let Some(roughness) = placed.roughness {
-            for material in &mut scene.materials {
-                material.material.roughness = roughness;
-            }
+        lamps::edit(&mut scene, &placed.lamps);
+        for material in &mut scene.materials {
+            let roughness = material.material.roughness + placed.rougher;
+            material.material.roughness = roughness.clamp(0.0, 1.0);
         }
         (self.scene, self.placed) = (scene, placed);
         self.upload()
@@ -267,7 +261,7 @@ impl<'a> Viewer<'a> {
     }
 
     /// Takes back what our renderer has shaded, before it shades again.
-    fn begin(&mut self) -> Result<(), EngineError> {
+    pub(super) fn begin(&mut self) -> Result<(), EngineError> {
         if !std::mem::take(&mut self.is_unshaded) {
             self.renderer.visibility()?;
         }
@@ -275,7 +269,7 @@ impl<'a> Viewer<'a> {
     }
 
     /// What the pass has to handle of the scene's surfaces.
-    fn surfaces(&self) -> Effects {
+    pub(super) fn surfaces(&self) -> Effects {
         let required = self.scene.effects() & Effects::SURFACES;
         if required.is_empty() { Effects::DIFFUSE } else { required }
     }
@@ -297,9 +291,13 @@ impl<'a> Viewer<'a> {
 
     /// Our picture once more, with other random numbers where it has any.
     fn draw_round(&mut self, of: (Seen, Level), mut means: Means) -> Result<Drawn, EngineError> {
-        self.begin()?;
         let seed = means.samples();
-        let time = if of.0.shadows { self.shade_with_shadows(of.1, seed)? } else { self.shade(of.1)? };
+        let mut time = self.shade_once(&of, seed)?;
+        if !self.compiled.contains(&(of.1, of.0.shadows)) {
+            // The first time was the driver's compiler's
+            time = self.shade_once(&of, seed)?;
+            self.compiled.push((of.1, of.0.shadows));
+        }
         if let Some(fog) = self.fog(&of.0) {
             let [columns, rows] = self.size.map(|side| side.div_ceil(8));
             if self.fogged.as_ref().is_none_or(|(shadows, _)| *shadows != of.0.shadows) {
@@ -313,6 +311,15 @@ impl<'a> Viewer<'a> {
         }
         means.add(&radiance(&mut self.renderer)?, 1);
         Ok(Drawn { of, radiance: means.mean(), means, time })
+    }
+
+    fn shade_once(
+        &mut self,
+        (seen, level): &(Seen, Level),
+        seed: u32,
+    ) -> Result<Option<Duration>, EngineError> {
+        self.begin()?;
+        if seen.shadows { self.shade_with_shadows(*level, seed) } else { self.shade(*level) }
     }
 
     /// The fog of what is seen.
@@ -380,59 +387,14 @@ impl<'a> Viewer<'a> {
         Ok(())
     }
 
-    /// Shades by each level, and without each effect in turn.
-    fn try_levels_and_effects(&mut self, seen: &Seen) -> Result<(), EngineError> {
-        if self.tried.as_ref().is_some_and(|(of, _)| of == seen) {
-            return Ok(());
-        }
-        let surfaces = self.surfaces();
-        let mut tried = vec![];
-        for level in Level::ALL {
-            tried.push(self.try_shading(level.name().to_owned(), surfaces, level.quality())?);
-        }
-        for effect in (surfaces - Effects::MODEL).iter() {
-            let left = without(surfaces, effect);
-            if left.intersects(Effects::DIFFUSE | Effects::GLOSSY) {
-                tried.push(self.try_shading(format!("without {effect}"), left, Quality::default())?);
-            }
-        }
-        self.tried = Some((seen.clone(), tried));
-        Ok(())
-    }
-
-    fn try_shading(
-        &mut self,
-        name: String,
-        surfaces: Effects,
-        quality: Quality,
-    ) -> Result<Tried, EngineError> {
-        let mut fastest: Option<Duration> = None;
-        for _ in 0..COST_RUNS {
-            self.begin()?;
-            let took = self.renderer.shade(surfaces, quality)?;
-            fastest = fastest.into_iter().chain(took).min();
-        }
-        let milliseconds = fastest.map(|time| time.as_secs_f64() * 1e3);
-        Ok(Tried { name, milliseconds, radiance: radiance(&mut self.renderer)? })
-    }
-
-    /// What was tried of a view, by the truth as far as it is known.
-    fn costs(&self, seen: &Seen, truth: Option<&Means>) -> Vec<Cost> {
-        let tried = self.tried.as_ref().filter(|(of, _)| of == seen);
-        let cost = |tried: &Tried| Cost {
-            name: tried.name.clone(),
-            milliseconds: tried.milliseconds,
-            distance: truth.and_then(|truth| truth.distance(&tried.radiance, |i| self.is_lit(i))),
-        };
-        tried.into_iter().flat_map(|(_, tried)| tried).map(cost).collect()
-    }
-
     /// Whether a pixel shows no lamp.
-    fn is_lit(&self, pixel: usize) -> bool {
+    pub(super) fn is_lit(&self, pixel: usize) -> bool {
         self.emission.get(pixel) == Some(&DVec3::ZERO)
     }
 
-    fn shown(&self, state: &State, seen: &Seen) -> Shown<'_> {
+    /// What was drawn last, of this state.
+    pub fn shown(&self, state: &State) -> Shown<'_> {
+        let seen = &self.seen(state);
         let ours = self.ours.as_ref().map_or(&[][..], |drawn| &drawn.radiance);
         let truth = self.truth.as_ref().filter(|(of, _)| of == seen).map(|(_, truth)| truth);
         let other = match state.mode {
@@ -450,30 +412,13 @@ impl<'a> Viewer<'a> {
             truth: truth.map(|truth| (truth.samples(), truth.distance(ours, |i| self.is_lit(i)))),
             yardstick: yardstick_for(&self.scene).0,
             costs: if state.costs { self.costs(seen, truth) } else { vec![] },
+            measured: self.measured(),
         }
     }
 }
 
 /// Samples of the truth that are enough.
 const MOST_SAMPLES: u32 = 1 << 14;
-
-/// The set without an effect, and without those that need it.
-fn without(surfaces: Effects, effect: Effects) -> Effects {
-    let dependent = match effect {
-        Effects::DIFFUSE => Effects::DIFFUSE_ROUGHNESS | Effects::COUPLED | Effects::COUPLED_BY_ALBEDO,
-        Effects::GLOSSY => {
-            Effects::SPECULAR_INPUT
-                | Effects::ANISOTROPY
-                | Effects::COUPLED
-                | Effects::COUPLED_BY_ALBEDO
-                | Effects::MULTIPLE_SCATTERING
-                | Effects::THIN_FILM
-        }
-        Effects::COAT => Effects::COAT_NORMAL | Effects::COAT_BY_ALBEDO,
-        _ => Effects::empty(),
-    };
-    surfaces - effect - dependent
-}
 
 /// A scene's buffers, and what draws it by our table and by the yardstick's.
 type Uploaded<'a> = (SceneBuffers, SceneRenderer<'a>, Option<SceneRenderer<'a>>);
@@ -490,6 +435,6 @@ fn upload<'a>(engines: &'a Engines, scene: &Scene, size: [u32; 2]) -> Result<Upl
     Ok((buffers, renderer, yardstick.transpose()?))
 }
 
-fn radiance(renderer: &mut SceneRenderer<'_>) -> Result<Vec<DVec3>, EngineError> {
+pub(super) fn radiance(renderer: &mut SceneRenderer<'_>) -> Result<Vec<DVec3>, EngineError> {
     Ok(renderer.radiance()?.into_iter().map(|texel| texel.truncate().as_dvec3()).collect())
 }

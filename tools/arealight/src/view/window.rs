@@ -1,7 +1,9 @@
 //! The viewer in a window of X11 or Wayland. Pictures come from the device through memory: whatever it is, it
 //! need not present.
 
+use super::interface::Interface;
 use super::paint;
+use super::panel::Seen;
 use super::script::Script;
 use super::state::{Event, Key, State};
 use super::viewer::Viewer;
@@ -14,7 +16,7 @@ use std::num::NonZeroU32;
 use std::path::Path;
 use std::process::ExitCode;
 use std::rc::Rc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
@@ -39,6 +41,10 @@ pub fn show(
     let mut desk = Desk {
         viewer,
         state,
+        interface: Interface::new(1.0),
+        coarse: 1,
+        drawn: None,
+        rest: Instant::now(),
         size,
         samples,
         script,
@@ -73,6 +79,13 @@ type Pixels = Surface<OwnedDisplayHandle, Rc<Window>>;
 struct Desk<'a> {
     viewer: Viewer<'a>,
     state: State,
+    interface: Interface,
+    /// How many pixels of the window are one of the picture on each axis while what is seen changes.
+    coarse: u32,
+    /// What was drawn last, and by how many.
+    drawn: Option<(State, u32)>,
+    /// When what is seen will have rested long enough for every pixel.
+    rest: Instant,
     /// Of the picture, and so of the window, in pixels.
     size: [u32; 2],
     samples: u32,
@@ -93,6 +106,15 @@ struct Desk<'a> {
 /// The most seconds of a script from frame to frame.
 const MOST_STEP: f64 = 0.25;
 
+/// What a frame may take while what is seen changes, so that ten are shown a second.
+const MOST_FRAME: Duration = Duration::from_millis(100);
+
+/// The fewest pixels: so many of the window on each axis are one.
+const MOST_COARSE: u32 = 6;
+
+/// How long nothing changes before every pixel is drawn.
+const REST: Duration = Duration::from_millis(200);
+
 impl Desk<'_> {
     fn open(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
         let size = PhysicalSize::<u32>::from(self.size);
@@ -100,6 +122,8 @@ impl Desk<'_> {
         let window = Rc::new(events.create_window(attributes).map_err(|error| no_window(&error))?);
         let surface = Surface::new(&self.context, Rc::clone(&window)).map_err(|error| no_window(&error))?;
         self.size = window.inner_size().into();
+        self.interface = Interface::new(window.scale_factor() as f32);
+        self.state.panel = self.script.is_none();
         self.window = Some((window, surface));
         self.last = Instant::now();
         Ok(())
@@ -107,7 +131,9 @@ impl Desk<'_> {
 
     fn apply(&mut self, event: Event) {
         let [width, height] = self.size.map(|side| f64::from(side.max(1)));
-        self.state.apply(event, self.viewer.scene(), width / height);
+        if !self.interface.takes(&event, self.size) {
+            self.state.apply(event, self.viewer.scene(), width / height);
+        }
         if let Some((window, _)) = &self.window {
             window.request_redraw();
         }
@@ -117,7 +143,6 @@ impl Desk<'_> {
     fn draw(&mut self) -> Result<(), Failure> {
         // Minimised windows have no area
         let [Some(width), Some(height)] = self.size.map(NonZeroU32::new) else { return Ok(()) };
-        self.viewer.resize(self.size).map_err(|error| gpu::failure(error, self.scene))?;
         if let Some(script) = self.script {
             // The script waits for slow frames, so that what each event does is shown
             let step = self.last.elapsed().as_secs_f64().min(MOST_STEP);
@@ -129,14 +154,25 @@ impl Desk<'_> {
             self.before = now;
             self.state.quit |= now > script.seconds();
         }
-        let shown =
-            self.viewer.draw(&self.state, self.samples).map_err(|error| gpu::failure(error, self.scene))?;
-        let frame = paint(&self.state, &shown);
+        let began = Instant::now();
+        let changes = self.drawn.as_ref().is_some_and(|(before, _)| !self.state.is_seen_as(before));
+        if changes {
+            self.rest = began + REST;
+        }
+        let coarse = if began < self.rest { self.coarse } else { 1 };
+        let fail = |error| gpu::failure(error, self.scene);
+        self.viewer.resize(self.size.map(|side| side.div_ceil(coarse))).map_err(fail)?;
+        self.viewer.draw(&self.state, self.samples).map_err(fail)?;
+        self.drawn = Some((self.state.clone(), coarse));
+        let shown = self.viewer.shown(&self.state);
+        let mut frame = paint(&self.state, &shown).enlarged(self.size);
         if std::mem::take(&mut self.state.save) {
             let path = format!("view-{:04}.png", self.frames);
             frame.save_png(path.as_ref())?;
             eprintln!("wrote {path}");
         }
+        let seen = Seen { scene: self.viewer.scene(), shown: &shown };
+        self.interface.draw(&mut frame, &mut self.state, &seen);
         let Some((window, surface)) = &mut self.window else { return Ok(()) };
         surface.resize(width, height).map_err(|error| no_window(&error))?;
         let mut pixels = surface.buffer_mut().map_err(|error| no_window(&error))?;
@@ -146,12 +182,21 @@ impl Desk<'_> {
         window.pre_present_notify();
         pixels.present().map_err(|error| no_window(&error))?;
         self.frames += 1;
+        if changes {
+            // Slow frames have fewer pixels from now on, fast ones more
+            self.coarse = match began.elapsed() {
+                slow if slow > MOST_FRAME => (self.coarse + 1).min(MOST_COARSE),
+                fast if fast < MOST_FRAME / 3 => (self.coarse - 1).max(1),
+                _ => self.coarse,
+            };
+            self.rest = Instant::now() + REST;
+        }
         Ok(())
     }
 
     /// Whether the next frame differs, although nobody does anything.
     fn goes_on(&self) -> bool {
-        self.script.is_some() || self.viewer.goes_on(&self.state)
+        self.script.is_some() || self.interface.goes_on() || self.viewer.goes_on(&self.state)
     }
 }
 
@@ -189,6 +234,15 @@ impl ApplicationHandler for Desk<'_> {
             }
             WindowEvent::CloseRequested | WindowEvent::Destroyed => events.exit(),
             WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
+                if self.interface.has_keyboard() {
+                    let key = match &event.logical_key {
+                        WindowKey::Named(NamedKey::Enter) => Some(egui::Key::Enter),
+                        WindowKey::Named(NamedKey::Escape) => Some(egui::Key::Escape),
+                        WindowKey::Named(NamedKey::Backspace) => Some(egui::Key::Backspace),
+                        _ => None,
+                    };
+                    self.interface.type_in(key, event.text.as_deref());
+                }
                 let key = name_of(&event.logical_key).and_then(|name| name.parse::<Key>().ok());
                 if let Some(key) = key {
                     self.apply(Event::Key(key));
@@ -224,8 +278,11 @@ impl ApplicationHandler for Desk<'_> {
     }
 
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
-        events.set_control_flow(ControlFlow::Wait);
-        if let Some((window, _)) = self.window.as_ref().filter(|_| self.goes_on()) {
+        let is_coarse = self.drawn.as_ref().is_some_and(|(_, coarse)| *coarse > 1);
+        let rests = Instant::now() >= self.rest;
+        let wait = if is_coarse && !rests { ControlFlow::WaitUntil(self.rest) } else { ControlFlow::Wait };
+        events.set_control_flow(wait);
+        if let Some((window, _)) = self.window.as_ref().filter(|_| self.goes_on() || is_coarse && rests) {
             window.request_redraw();
         }
     }

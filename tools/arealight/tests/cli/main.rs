@@ -13,5 +13,4 @@ mod pictures;
 mod studio;
 mod table;
 mod view_record;
-#[cfg(feature = "view")]
 mod view_window;

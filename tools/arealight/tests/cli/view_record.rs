@@ -128,6 +128,20 @@ fn shadows_and_scenes_without_a_yardstick_are_shown_too() {
 }
 
 #[test]
+fn what_is_done_in_the_panel_is_the_panels() {
+    let Some(()) = device() else { return };
+    // The panel covers a picture so small: the same drag turns the camera without it
+    let drag = "0.5 press 0.4 0.2\n0.75 move 0.6 0.3\n0.75 release\n";
+    let ends = |before: &str, after: &str| {
+        let recording = record("sweep.glb", &format!("0 key s\n{before}{drag}{after}"));
+        recording.difference(0, recording.frames.len() - 1)
+    };
+    let with = ends("0.25 key h\n", "1 key h\n");
+    let without = ends("", "1 key h\n1.25 key h\n");
+    assert!(with < 1e-3 && without > 0.05, "{with}, {without}");
+}
+
+#[test]
 fn fog_is_the_scenes_until_it_is_thinner_or_off() {
     let Some(()) = device() else { return };
     let recording = record("slats.glb", "0 key s\n0.25 key ,\n0.5 key r\n0.75 key w\n1.25 key f\n");

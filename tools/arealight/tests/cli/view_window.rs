@@ -14,7 +14,9 @@ const SIZE: [u32; 2] = [320, 200];
 /// Every mode for a second each, lamps and views that are dragged.
 const SCRIPT: &str = "
 0.25 key h
-0.75 key h
+0.75 press 0.3 0.2
+0.75 release
+1    key h
 1    key 2
 1.5  key 4
 2    key 1

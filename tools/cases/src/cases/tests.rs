@@ -96,6 +96,10 @@ fn other_lights_become_shapes_relative_to_the_point() {
     let (center, axis_u, axis_v) = (DVec3::new(-1.0, -2.0, 2.0), DVec3::X, DVec3::Y * 2.0);
     assert_eq!(disk.light.shape, LightShape::Disk { center, axis_u, axis_v });
     assert_eq!((disk.surface.alpha, disk.light.two_sided), (0.25, false));
+    let window = r#""opening": {"center": [1, 2, 4], "axis_u": [1, 0, 0], "axis_v": [0, 1, 0]}"#;
+    let axes = r#""center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [0, 2, 0]"#;
+    let seen = shape(&format!(r#""type": "disk", {axes}, {window}"#)).unwrap();
+    assert_eq!(seen.light.opening.map(|opening| opening.center), Some(DVec3::Z));
     let sphere = shape(r#""type": "sphere", "center": [0, 0, 5], "radius": 0.5"#).unwrap();
     assert_eq!(sphere.light.shape, LightShape::Sphere { center, radius: 0.5 });
     // What its ends are

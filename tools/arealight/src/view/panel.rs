@@ -1,0 +1,210 @@
+//! The panel: every choice as a control, lamps by name, and what the picture costs.
+
+use super::lamps::Edit;
+use super::state::{KEYS, Key, Mode, Partner, State};
+use super::viewer::Shown;
+use crate::means::Distance;
+use arealight::Level;
+use arealight_scene::Scene;
+use egui::{Context, Grid, ScrollArea, Slider, Ui, Window};
+use std::time::Duration;
+
+/// What is shown of which scene.
+pub struct Seen<'a> {
+    /// With its lamps as they are.
+    pub scene: &'a Scene,
+    pub shown: &'a Shown<'a>,
+}
+
+impl Seen<'_> {
+    /// What a lamp is called.
+    pub fn name(&self, lamp: usize) -> &str {
+        let light = self.scene.lamps.get(lamp).and_then(|lamp| self.scene.lights.get(lamp.lights.start));
+        light.map_or("", |light| &light.name)
+    }
+
+    /// What there is to say of a picture, in lines.
+    pub fn status(&self, state: &State) -> Vec<String> {
+        let level = state.level.name();
+        let shadows = if state.has_shadows() { "with shadows" } else { "without shadows" };
+        let rougher =
+            if state.rougher == 0.0 { String::new() } else { format!(", rougher {:+.2}", state.rougher) };
+        let fog = state.fog().map_or_else(String::new, |fog| format!(", fog {:.3}", fog.density));
+        let mut lines = vec![format!("{level}, {shadows}{fog}{rougher}, exposure {:+.1}", state.exposure)];
+        if self.shown.times.iter().any(Option::is_some) {
+            let [visibility, shading] = self.shown.times.map(milliseconds);
+            lines.push(format!("shading {shading}, visibility {visibility}"));
+        }
+        if let Some((samples, distance)) = self.shown.truth {
+            let off = distance.map_or_else(|| "error not known yet".to_owned(), error);
+            lines.push(format!("{off}; {samples} samples of the truth"));
+        }
+        if !state.panel {
+            lines.push("h: panel".to_owned());
+        }
+        lines
+    }
+}
+
+/// Shows the panel, and does what is done in it.
+pub fn panel(context: &Context, state: &mut State, seen: &Seen<'_>) {
+    let height = context.content_rect().height() - 90.0;
+    Window::new("Arealight").default_pos([8.0, 8.0]).resizable(false).show(context, |ui| {
+        ScrollArea::vertical().max_height(height).show(ui, |ui| {
+            ui.spacing_mut().slider_width = 110.0;
+            picture(ui, state);
+            ui.separator();
+            ui.strong("Lamps");
+            list(ui, state, seen);
+            if let Some(lamp) = state.picked {
+                edit(ui, state, seen, lamp);
+            }
+            ui.separator();
+            ui.small(format!("effects: {}", seen.shown.effects));
+            ui.horizontal(|ui| {
+                state.save |= ui.button("Save picture").clicked();
+                if ui.button("Reset").on_hover_text("lamps, camera, exposure, fog, roughness").clicked() {
+                    state.press_key(Key::Reset);
+                }
+            });
+            ui.collapsing("Keys", |ui| {
+                Grid::new("keys").num_columns(2).show(ui, |ui| {
+                    for (keys, what) in KEYS {
+                        ui.monospace(keys);
+                        ui.label(what);
+                        ui.end_row();
+                    }
+                });
+                ui.label("drag a lamp to move it; the wheel moves it farther");
+                ui.label("drag with the second button to slide the view");
+            });
+        });
+    });
+}
+
+/// The level, what is shown, and what the whole picture has.
+fn picture(ui: &mut Ui, state: &mut State) {
+    ui.horizontal_wrapped(|ui| {
+        for level in Level::ALL {
+            ui.selectable_value(&mut state.level, level, level.name());
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        let modes = [
+            (Mode::Picture, "picture"),
+            (Mode::Wipe(Partner::Truth), "wipe: truth"),
+            (Mode::Wipe(Partner::Yardstick), "wipe: engines"),
+            (Mode::Error, "error map"),
+        ];
+        for (mode, name) in modes {
+            let is_there = mode != Mode::Wipe(Partner::Yardstick) || state.has_yardstick;
+            ui.add_enabled_ui(is_there, |ui| ui.selectable_value(&mut state.mode, mode, name));
+        }
+    });
+    ui.horizontal(|ui| {
+        ui.checkbox(&mut state.shadows, "shadows");
+        ui.checkbox(&mut state.costs, "costs");
+        ui.checkbox(&mut state.is_foggy, "fog");
+    });
+    if state.is_foggy {
+        let first = state.first_fog.density;
+        let densities = 1e-3 * first..=1e3 * first;
+        ui.add(Slider::new(&mut state.fog.density, densities).logarithmic(true).text("density"));
+    }
+    ui.add(
+        Slider::new(&mut state.exposure, -10.0..=10.0).clamping(egui::SliderClamping::Never).text("exposure"),
+    );
+    ui.add(Slider::new(&mut state.rougher, -1.0..=1.0).text("rougher"));
+}
+
+/// The lamps, each with its switch.
+fn list(ui: &mut Ui, state: &mut State, seen: &Seen<'_>) {
+    ScrollArea::vertical().id_salt("lamps").max_height(110.0).show(ui, |ui| {
+        for lamp in 0..state.lamps.len() {
+            let row = ui.horizontal(|ui| {
+                ui.checkbox(&mut state.lamps[lamp].is_on, "");
+                let name = match seen.name(lamp) {
+                    "" => format!("lamp {lamp}"),
+                    name => name.to_owned(),
+                };
+                let chosen = ui.selectable_label(state.picked == Some(lamp), name);
+                if chosen.clicked() {
+                    state.picked = Some(lamp);
+                }
+                chosen.hovered()
+            });
+            if row.inner {
+                state.hovered = Some(lamp);
+            }
+        }
+    });
+}
+
+/// What one lamp is.
+fn edit(ui: &mut Ui, state: &mut State, seen: &Seen<'_>, lamp: usize) {
+    let step = 2e-3 * seen.scene.bounds.diagonal().max(1e-6);
+    let Some(edit) = state.lamps.get_mut(lamp) else { return };
+    ui.horizontal(|ui| {
+        ui.add(Slider::new(&mut edit.stops, -8.0..=8.0).text("stops"));
+        ui.color_edit_button_rgb(&mut edit.color);
+    });
+    ui.add(Slider::new(&mut edit.size, 0.1..=10.0).logarithmic(true).text("size"));
+    for (degrees, (most, name)) in edit.turn.iter_mut().zip([(180.0, "turn"), (90.0, "tilt")]) {
+        ui.add(Slider::new(degrees, -most..=most).suffix("°").text(name));
+    }
+    ui.horizontal(|ui| {
+        for side in edit.offset.as_mut() {
+            ui.add(egui::DragValue::new(side).speed(step).max_decimals(3));
+        }
+        ui.label("moved");
+        if ui.small_button("undo").on_hover_text("this lamp as it was").clicked() {
+            *edit = Edit::NONE;
+        }
+    });
+}
+
+/// What levels and effects cost, as far as it is measured.
+pub fn table(context: &Context, seen: &Seen<'_>) {
+    let corner = egui::Align2::RIGHT_TOP;
+    let window = Window::new("Costs").anchor(corner, [-8.0, 8.0]).resizable(false).collapsible(false);
+    window.show(context, |ui| {
+        Grid::new("costs").num_columns(3).striped(true).show(ui, |ui| {
+            for head in ["", "shading", "error"] {
+                ui.strong(head);
+            }
+            ui.end_row();
+            for cost in &seen.shown.costs {
+                ui.label(&cost.name);
+                ui.monospace(
+                    cost.milliseconds.map_or_else(|| "-".to_owned(), |time| format!("{time:.1} ms")),
+                );
+                ui.monospace(percent(cost.distance));
+                ui.end_row();
+            }
+        });
+        let [done, all] = seen.shown.measured;
+        if done < all {
+            ui.add(
+                egui::ProgressBar::new(done as f32 / all as f32).text(format!("measured {done} of {all}")),
+            );
+        }
+    });
+}
+
+/// An error beside the noise of the truth that it is of.
+fn error(distance: Distance) -> String {
+    format!("error {}, the truth's noise {:.1} %", percent(Some(distance)), distance.noise * 100.0)
+}
+
+/// An error as far as it is known.
+fn percent(distance: Option<Distance>) -> String {
+    match distance {
+        None => "-".to_owned(),
+        Some(Distance { error: None, .. }) => "in noise".to_owned(),
+        Some(Distance { error: Some(error), .. }) => format!("{:.1} %", error * 100.0),
+    }
+}
+
+fn milliseconds(time: Option<Duration>) -> String {
+    time.map_or_else(|| "time not known".to_owned(), |time| format!("{:.1} ms", time.as_secs_f64() * 1e3))
+}
