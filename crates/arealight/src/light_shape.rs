@@ -98,7 +98,9 @@ impl LightShape {
         let point = |place: DVec3| by.transform_point3(place);
         let vector = |axis: DVec3| by.transform_vector3(axis);
         let turn = |outline: &mut [DVec3]| {
-            outline.iter_mut().for_each(|vertex| *vertex = point(*vertex));
+            for vertex in outline.iter_mut() {
+                *vertex = point(*vertex);
+            }
             if mirrored {
                 outline.reverse();
             }

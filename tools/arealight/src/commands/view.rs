@@ -15,8 +15,8 @@ use std::process::ExitCode;
 
 /// Look at a scene: move its lamps and the camera, and compare the error and cost of each level.
 ///
-/// In a window, which `h` explains the keys of; or, with --record, as pictures of what a script does, without
-/// one. For example: arealight view scenes/room.glb
+/// In a window, with a panel; or, with --record, as pictures of what a script does, without a window. For
+/// example: arealight view scenes/room.glb
 #[derive(clap::Args)]
 pub struct Arguments {
     /// A .gltf or .glb file; the built-in demo scene if absent

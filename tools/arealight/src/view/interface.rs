@@ -9,6 +9,9 @@ use crate::canvas::Canvas;
 use egui::{Align2, Color32, Context, FontId, LayerId, Painter, Pos2, Rect, Stroke, Vec2};
 use egui_software_backend::{BufferMutRef, ColorFieldOrder, EguiSoftwareRender};
 
+/// A window's place follows from its size, that from its columns, and theirs from what is in them.
+const PASSES: usize = 3;
+
 /// The panel's state, and what draws it.
 pub struct Interface {
     context: Context,
@@ -28,6 +31,7 @@ impl Interface {
     pub fn new(scale: f32) -> Self {
         let context = Context::default();
         context.set_zoom_factor(scale);
+        context.options_mut(|options| options.max_passes = PASSES.try_into().unwrap_or(options.max_passes));
         context.style_mut(|style| {
             // What is recorded does not depend on time
             style.animation_time = 0.0;
@@ -118,8 +122,8 @@ impl Interface {
         let open = (state.panel, state.picked, state.costs.then_some(seen.shown.costs.len()));
         let opens = std::mem::replace(&mut self.open, open) != open;
         let output = self.context.run(input, |context| {
-            if opens && context.current_pass_index() == 0 {
-                context.request_discard("windows are as large as their first pass finds");
+            if opens && context.current_pass_index() + 1 < PASSES {
+                context.request_discard("a window opens");
             }
             let painter = context.layer_painter(LayerId::background());
             label(&painter, state, seen, screen);

@@ -121,8 +121,8 @@ pub fn edit(scene: &mut Scene, edits: &[Edit]) {
     }
 }
 
-/// Where a lamp is seen: the box about it, from its upper left corner to its lower right one, in heights of the
-/// picture from the middle. None where a part of it is not in front of the camera.
+/// Where a lamp is seen: the box about it, from its upper left corner to its lower right one, in heights of
+/// the picture from the middle. None where a part of it is not in front of the camera.
 pub fn seen(scene: &Scene, camera: &Camera, lamp: usize) -> Option<[[f64; 2]; 2]> {
     let lights = scene.lights.get(scene.lamps.get(lamp)?.lights.clone())?;
     let mut box_seen = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];

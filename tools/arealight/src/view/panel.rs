@@ -48,9 +48,10 @@ impl Seen<'_> {
 
 /// Shows the panel, and does what is done in it.
 pub fn panel(context: &Context, state: &mut State, seen: &Seen<'_>) {
-    let height = context.content_rect().height() - 90.0;
+    let height = context.content_rect().height() - 140.0;
     Window::new("Arealight").default_pos([8.0, 8.0]).resizable(false).show(context, |ui| {
         ScrollArea::vertical().max_height(height).show(ui, |ui| {
+            ui.set_width(232.0);
             ui.spacing_mut().slider_width = 110.0;
             picture(ui, state);
             ui.separator();
@@ -98,7 +99,10 @@ fn picture(ui: &mut Ui, state: &mut State) {
         ];
         for (mode, name) in modes {
             let is_there = mode != Mode::Wipe(Partner::Yardstick) || state.has_yardstick;
-            ui.add_enabled_ui(is_there, |ui| ui.selectable_value(&mut state.mode, mode, name));
+            let button = egui::Button::selectable(state.mode == mode, name);
+            if ui.add_enabled(is_there, button).clicked() {
+                state.mode = mode;
+            }
         }
     });
     ui.horizontal(|ui| {
