@@ -128,6 +128,9 @@ impl Interface {
             let painter = context.layer_painter(LayerId::background());
             label(&painter, state, seen, screen);
             if state.panel {
+                if context.is_pointer_over_area() {
+                    state.hovered = None;
+                }
                 panel(context, state, seen);
             }
             if state.costs {
