@@ -18,6 +18,8 @@ pub struct Interface {
     renderer: EguiSoftwareRender,
     /// Since the last frame.
     events: Vec<egui::Event>,
+    /// Where the pointer is.
+    pointer: Pos2,
     /// A button of the pointer went down on the panel, and is not up again.
     holds: bool,
     /// The panel changes by itself.
@@ -40,52 +42,55 @@ impl Interface {
             style.visuals.window_shadow = egui::Shadow::NONE;
         });
         let renderer = EguiSoftwareRender::new(ColorFieldOrder::Rgba).with_caching(false);
-        Self { context, renderer, events: vec![], holds: false, goes_on: false, open: (false, None, None) }
+        Self {
+            context,
+            renderer,
+            events: vec![],
+            pointer: Pos2::ZERO,
+            holds: false,
+            goes_on: false,
+            open: (false, None, None),
+        }
     }
 
     /// Takes an event for the panel: whether it is the panel's alone. `size` is the picture's, in pixels.
     pub fn takes(&mut self, event: &Event, size: [u32; 2]) -> bool {
-        let scale = self.context.zoom_factor();
-        let place = |at: [f64; 2]| {
-            Pos2::new(at[0] as f32 * size[0] as f32 / scale, at[1] as f32 * size[1] as f32 / scale)
+        if let Event::Press { at, .. } | Event::Move(at) = *event {
+            let pixels = Vec2::new(at[0] as f32 * size[0] as f32, at[1] as f32 * size[1] as f32);
+            self.pointer = (pixels / self.context.zoom_factor()).to_pos2();
+            self.events.push(egui::Event::PointerMoved(self.pointer));
+        }
+        let (pos, modifiers) = (self.pointer, egui::Modifiers::NONE);
+        let below = self.context.layer_id_at(pos);
+        let is_panel = below.is_some_and(|layer| layer.order != egui::Order::Background);
+        let mut press = |second, pressed| {
+            let button = if second { egui::PointerButton::Secondary } else { egui::PointerButton::Primary };
+            self.events.push(egui::Event::PointerButton { pos, button, pressed, modifiers });
         };
-        let is_panel =
-            |at| self.context.layer_id_at(at).is_some_and(|layer| layer.order != egui::Order::Background);
-        let button = |pos, second, pressed| egui::Event::PointerButton {
-            pos,
-            button: if second { egui::PointerButton::Secondary } else { egui::PointerButton::Primary },
-            pressed,
-            modifiers: egui::Modifiers::NONE,
-        };
-        let pointer = self.context.input(|input| input.pointer.latest_pos());
         match *event {
             Event::Key(_) => self.has_keyboard(),
-            Event::Press { at, second } => {
-                let at = place(at);
-                self.holds = is_panel(at);
-                self.events.extend([egui::Event::PointerMoved(at), button(at, second, true)]);
-                self.holds
+            Event::Press { second, .. } => {
+                press(second, true);
+                self.holds = is_panel;
+                is_panel
             }
-            Event::Move(at) => {
-                self.events.push(egui::Event::PointerMoved(place(at)));
-                self.holds || is_panel(place(at))
-            }
+            Event::Move(_) => self.holds || is_panel,
             Event::Release => {
-                let moved = self.events.iter().rev().find_map(|event| match event {
-                    egui::Event::PointerMoved(at) => Some(*at),
-                    _ => None,
-                });
-                let at = moved.or(pointer).unwrap_or_default();
-                self.events.extend([false, true].map(|second| button(at, second, false)));
+                press(false, false);
+                press(true, false);
                 std::mem::take(&mut self.holds)
             }
             Event::Wheel(steps) => {
-                let delta = Vec2::new(0.0, steps as f32);
-                let (unit, modifiers) = (egui::MouseWheelUnit::Line, egui::Modifiers::NONE);
+                let (unit, delta) = (egui::MouseWheelUnit::Line, Vec2::new(0.0, steps as f32));
                 self.events.push(egui::Event::MouseWheel { unit, delta, modifiers });
-                pointer.is_some_and(is_panel)
+                is_panel
             }
         }
+    }
+
+    /// Whether something was done since the last frame.
+    pub fn is_asked(&self) -> bool {
+        !self.events.is_empty()
     }
 
     /// Whether a number of the panel is being typed.
@@ -170,7 +175,7 @@ fn label(painter: &Painter, state: &State, seen: &Seen<'_>, screen: Vec2) {
             let stroke = Stroke::new(1.5, color);
             painter.rect_stroke(about, 2.0, stroke, egui::StrokeKind::Outside);
             if is_held {
-                text(painter, about.left_bottom() + Vec2::new(0.0, 4.0), Align2::LEFT_TOP, seen.name(lamp));
+                text(painter, about.left_bottom() + Vec2::new(0.0, 4.0), Align2::LEFT_TOP, &seen.name(lamp));
             }
         }
     }

@@ -18,9 +18,10 @@ pub struct Seen<'a> {
 
 impl Seen<'_> {
     /// What a lamp is called.
-    pub fn name(&self, lamp: usize) -> &str {
+    pub fn name(&self, lamp: usize) -> String {
         let light = self.scene.lamps.get(lamp).and_then(|lamp| self.scene.lights.get(lamp.lights.start));
-        light.map_or("", |light| &light.name)
+        let name = light.map(|light| light.name.clone()).filter(|name| !name.is_empty());
+        name.unwrap_or_else(|| format!("lamp {lamp}"))
     }
 
     /// What there is to say of a picture, in lines.
@@ -127,17 +128,9 @@ fn list(ui: &mut Ui, state: &mut State, seen: &Seen<'_>) {
         for lamp in 0..state.lamps.len() {
             let row = ui.horizontal(|ui| {
                 ui.checkbox(&mut state.lamps[lamp].is_on, "");
-                let name = match seen.name(lamp) {
-                    "" => format!("lamp {lamp}"),
-                    name => name.to_owned(),
-                };
-                let chosen = ui.selectable_label(state.picked == Some(lamp), name);
-                if chosen.clicked() {
-                    state.picked = Some(lamp);
-                }
-                chosen.hovered()
+                ui.selectable_value(&mut state.picked, Some(lamp), seen.name(lamp))
             });
-            if row.inner {
+            if row.inner.hovered() {
                 state.hovered = Some(lamp);
             }
         }

@@ -82,8 +82,8 @@ struct Desk<'a> {
     interface: Interface,
     /// How many pixels of the window are one of the picture on each axis while what is seen changes.
     coarse: u32,
-    /// What was drawn last, and by how many.
-    drawn: Option<(State, u32)>,
+    /// What was drawn last, and by how many pixels.
+    drawn: Option<(State, [u32; 2])>,
     /// When what is seen will have rested long enough for every pixel.
     rest: Instant,
     /// Of the picture, and so of the window, in pixels.
@@ -161,9 +161,13 @@ impl Desk<'_> {
         }
         let coarse = if began < self.rest { self.coarse } else { 1 };
         let fail = |error| gpu::failure(error, self.scene);
-        self.viewer.resize(self.size.map(|side| side.div_ceil(coarse))).map_err(fail)?;
-        self.viewer.draw(&self.state, self.samples).map_err(fail)?;
-        self.drawn = Some((self.state.clone(), coarse));
+        let now = Some((self.state.clone(), self.size.map(|side| side.div_ceil(coarse))));
+        // What is done in the panel shows at once: the picture converges in the next frame
+        if !self.interface.is_asked() || self.drawn != now {
+            self.viewer.resize(self.size.map(|side| side.div_ceil(coarse))).map_err(fail)?;
+            self.viewer.draw(&self.state, self.samples).map_err(fail)?;
+            self.drawn = now;
+        }
         let shown = self.viewer.shown(&self.state);
         let mut frame = paint(&self.state, &shown).enlarged(self.size);
         if std::mem::take(&mut self.state.save) {
@@ -278,7 +282,7 @@ impl ApplicationHandler for Desk<'_> {
     }
 
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
-        let is_coarse = self.drawn.as_ref().is_some_and(|(_, coarse)| *coarse > 1);
+        let is_coarse = self.drawn.as_ref().is_some_and(|(_, size)| *size != self.size);
         let rests = Instant::now() >= self.rest;
         let wait = if is_coarse && !rests { ControlFlow::WaitUntil(self.rest) } else { ControlFlow::Wait };
         events.set_control_flow(wait);
