@@ -42,7 +42,7 @@ pub fn show(
         viewer,
         state,
         interface: Interface::new(1.0),
-        coarse: 1,
+        coarse: 3,
         drawn: None,
         rest: Instant::now(),
         size,
@@ -126,6 +126,7 @@ impl Desk<'_> {
         self.state.panel = self.script.is_none();
         self.window = Some((window, surface));
         self.last = Instant::now();
+        self.rest = self.last + REST; // a coarse picture is there sooner
         Ok(())
     }
 
