@@ -88,15 +88,16 @@ impl AreaLight {
             return None;
         }
         let LinearRgba { red, green, blue, .. } = self.radiance;
-        Some(Light {
+        let light = Light {
             name,
             radiance: Vec3::new(red, green, blue),
             two_sided: self.two_sided,
-            texture: image.map(|layer| LightTexture { layer, uvs: uvs(&self.shape, volume < 0.0) }),
+            texture: image.map(|layer| LightTexture { layer, uvs: uvs(&self.shape) }),
             profile: self.profile.clone(),
-            opening: self.opening.map(|opening| opening.moved(&world)),
-            shape: self.shape.moved(&world),
-        })
+            opening: self.opening,
+            shape: self.shape.clone(),
+        };
+        Some(light.moved(&world))
     }
 }
 
@@ -109,17 +110,12 @@ impl From<RectLight> for AreaLight {
     }
 }
 
-/// Coordinates of an image on a polygon's vertices, in the order that they have when they are moved: in its
-/// box along x and y, from the upper left as seen from -z.
-fn uvs(shape: &LightShape, mirrored: bool) -> Vec<DVec2> {
+/// Coordinates of an image on a polygon's vertices: in its box along x and y, from the upper left as seen
+/// from -z.
+fn uvs(shape: &LightShape) -> Vec<DVec2> {
     let [low, high] = shape.bounds();
     let size = (high - low).truncate().max(DVec2::splat(f64::MIN_POSITIVE));
-    let mut uvs: Vec<DVec2> =
-        shape.vertices().iter().map(|vertex| (high - *vertex).truncate() / size).collect();
-    if mirrored {
-        uvs.reverse();
-    }
-    uvs
+    shape.vertices().iter().map(|vertex| (high - *vertex).truncate() / size).collect()
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use crate::lights::{LightArguments, scene_name};
 use crate::output::{self, print};
 use crate::picture::Exposure;
 use crate::progress;
-use crate::view::{Engines, Interface, Mode, Script, Seen, Shown, State, Viewer, paint, show};
+use crate::view::{Engines, Interface, Mode, Script, Shown, State, Viewer, paint, show};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -137,7 +137,7 @@ fn record(
         said.push(summary(&state, &shown, now));
         let shown = if arguments.times { shown } else { shown.without_times() };
         let mut frame = paint(&state, &shown);
-        interface.draw(&mut frame, &mut state, &Seen { scene: viewer.scene(), shown: &shown });
+        interface.draw(&mut frame, &mut state, &shown);
         frame.save_png(&folder.join(format!("frame-{index:04}.png")))?;
         frames.push(frame);
         bar.inc(1);

@@ -3,8 +3,9 @@
 
 use super::lamps;
 use super::paint::BAR;
-use super::panel::{Seen, panel, table};
+use super::panel::{panel, table};
 use super::state::{Event, Mode, Partner, State};
+use super::viewer::Shown;
 use crate::canvas::Canvas;
 use egui::{Align2, Color32, Context, FontId, LayerId, Painter, Pos2, Rect, Stroke, Vec2};
 use egui_software_backend::{BufferMutRef, ColorFieldOrder, EguiSoftwareRender};
@@ -61,8 +62,7 @@ impl Interface {
             self.events.push(egui::Event::PointerMoved(self.pointer));
         }
         let (pos, modifiers) = (self.pointer, egui::Modifiers::NONE);
-        let below = self.context.layer_id_at(pos);
-        let is_panel = below.is_some_and(|layer| layer.order != egui::Order::Background);
+        let is_panel = self.context.layer_id_at(pos).is_some_and(is_panel);
         let mut press = |second, pressed| {
             let button = if second { egui::PointerButton::Secondary } else { egui::PointerButton::Primary };
             self.events.push(egui::Event::PointerButton { pos, button, pressed, modifiers });
@@ -115,31 +115,33 @@ impl Interface {
     }
 
     /// Draws it over a picture, and does to the state what was done in the panel.
-    pub fn draw(&mut self, canvas: &mut Canvas, state: &mut State, seen: &Seen<'_>) {
+    pub fn draw(&mut self, canvas: &mut Canvas, state: &mut State, shown: &Shown<'_>) {
         let size = canvas.size();
         let scale = self.context.zoom_factor();
         let screen = Vec2::new(size[0] as f32, size[1] as f32) / scale;
+        if self.is_asked() {
+            // Once a frame, not once an event: it looks at every triangle
+            let is_panel = self.context.layer_id_at(self.pointer).is_some_and(is_panel);
+            state.hover(shown.scene, f64::from(screen.x / screen.y), is_panel);
+        }
         let input = egui::RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, screen)),
             events: std::mem::take(&mut self.events),
             ..egui::RawInput::default()
         };
-        let open = (state.panel, state.picked, state.costs.then_some(seen.shown.costs.len()));
+        let open = (state.panel, state.picked, state.costs.then_some(shown.costs.len()));
         let opens = std::mem::replace(&mut self.open, open) != open;
         let output = self.context.run(input, |context| {
             if opens && context.current_pass_index() + 1 < PASSES {
                 context.request_discard("a window opens");
             }
             let painter = context.layer_painter(LayerId::background());
-            label(&painter, state, seen, screen);
+            label(&painter, state, shown, screen);
             if state.panel {
-                if context.is_pointer_over_area() {
-                    state.hovered = None;
-                }
-                panel(context, state, seen);
+                panel(context, state, shown);
             }
             if state.costs {
-                table(context, seen);
+                table(context, shown);
             }
         });
         let repaint = output.viewport_output.values().map(|viewport| viewport.repaint_delay).min();
@@ -154,20 +156,25 @@ impl Interface {
     }
 }
 
+/// Whether a layer is of the panel or the table, not of what labels the picture.
+fn is_panel(layer: LayerId) -> bool {
+    layer.order != egui::Order::Background
+}
+
 /// What is left free about text.
 const MARGIN: f32 = 8.0;
 
 /// Names what is in the picture: the lamps that are held, the sides of a wipe, the map's colours, what the
 /// picture is.
-fn label(painter: &Painter, state: &State, seen: &Seen<'_>, screen: Vec2) {
+fn label(painter: &Painter, state: &State, shown: &Shown<'_>, screen: Vec2) {
     let middle = Pos2::new(0.5 * screen.x, 0.5 * screen.y);
     let camera = state.orbit.camera();
-    for lamp in 0..seen.scene.lamps.len() {
+    for lamp in 0..shown.scene.lamps.len() {
         let is_held = state.hovered == Some(lamp) || state.panel && state.picked == Some(lamp);
         if !is_held && state.mode != Mode::Error {
             continue;
         }
-        if let Some(corners) = lamps::seen(seen.scene, &camera, lamp) {
+        if let Some(corners) = lamps::seen(shown.scene, &camera, lamp) {
             let [low, high] =
                 corners.map(|[x, y]| middle + Vec2::new(x as f32 * screen.y, y as f32 * screen.y));
             let about = Rect::from_min_max(low, high).expand(3.0);
@@ -175,13 +182,13 @@ fn label(painter: &Painter, state: &State, seen: &Seen<'_>, screen: Vec2) {
             let stroke = Stroke::new(1.5, color);
             painter.rect_stroke(about, 2.0, stroke, egui::StrokeKind::Outside);
             if is_held {
-                text(painter, about.left_bottom() + Vec2::new(0.0, 4.0), Align2::LEFT_TOP, &seen.name(lamp));
+                text(painter, about.left_bottom() + Vec2::new(0.0, 4.0), Align2::LEFT_TOP, &shown.name(lamp));
             }
         }
     }
     if let Mode::Wipe(partner) = state.mode {
-        let other = match (partner, seen.shown.truth) {
-            (Partner::Yardstick, _) => seen.shown.yardstick.to_owned(),
+        let other = match (partner, shown.truth) {
+            (Partner::Yardstick, _) => shown.yardstick.to_owned(),
             (Partner::Truth, Some((samples, _))) => format!("truth, {samples} samples"),
             (Partner::Truth, None) => "truth".to_owned(),
         };
@@ -196,7 +203,7 @@ fn label(painter: &Painter, state: &State, seen: &Seen<'_>, screen: Vec2) {
         text(painter, corner, Align2::RIGHT_BOTTOM, "difference, 0.1 % to 100 % of the mean");
     }
     let mut below = Pos2::new(MARGIN, screen.y - MARGIN);
-    for line in seen.status(state).iter().rev() {
+    for line in shown.status(state).iter().rev() {
         below.y = text(painter, below, Align2::LEFT_BOTTOM, line).top() - 4.0;
     }
 }
@@ -214,7 +221,6 @@ fn text(painter: &Painter, at: Pos2, align: Align2, line: &str) -> Rect {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::viewer::Shown;
     use arealight::Effects;
     use arealight_scene::Scene;
     use glam::DVec3;
@@ -240,6 +246,7 @@ mod tests {
             let pixels = (SIZE[0] * SIZE[1]) as usize;
             let (ours, emission) = (vec![DVec3::splat(0.2); pixels], vec![DVec3::ZERO; pixels]);
             let shown = Shown {
+                scene: &self.scene,
                 size: SIZE,
                 ours: &ours,
                 other: None,
@@ -252,8 +259,7 @@ mod tests {
                 measured: [2, 9],
             };
             let mut canvas = Canvas::new(SIZE[0], SIZE[1], [60; 3]);
-            let seen = Seen { scene: &self.scene, shown: &shown };
-            self.interface.draw(&mut canvas, &mut self.state, &seen);
+            self.interface.draw(&mut canvas, &mut self.state, &shown);
             canvas.bytes().to_vec()
         }
 

@@ -72,24 +72,16 @@ impl Edit {
     /// Turns and grows about the middle of a light, and moves.
     fn transform(&self, light: &Light) -> DAffine3 {
         let middle = light.shape.center();
-        let across = DVec3::Y.cross(front(&light.shape)).try_normalize().unwrap_or(DVec3::X);
+        let front = match light.shape {
+            LightShape::Tube { p0, p1, .. } => DVec3::Y.cross(p1 - p0),
+            _ => light.shape.area_vector(),
+        };
+        let across = DVec3::Y.cross(front).try_normalize().unwrap_or(DVec3::X);
         let [turn, tilt] = self.turn.map(f64::to_radians);
         DAffine3::from_translation(middle + self.offset)
             * DAffine3::from_quat(DQuat::from_rotation_y(turn) * DQuat::from_axis_angle(across, tilt))
             * DAffine3::from_scale(DVec3::splat(self.size))
             * DAffine3::from_translation(-middle)
-    }
-}
-
-/// Where a shape faces, not unit; across a tube.
-fn front(shape: &LightShape) -> DVec3 {
-    match shape {
-        LightShape::Disk { axis_u, axis_v, .. } => axis_u.cross(*axis_v),
-        LightShape::Tube { p0, p1, .. } => DVec3::Y.cross(*p1 - *p0),
-        shape => match shape.vertices() {
-            [a, b, c, ..] => (b - a).cross(c - a),
-            _ => DVec3::Z,
-        },
     }
 }
 

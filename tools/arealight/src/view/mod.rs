@@ -14,7 +14,6 @@ mod window;
 
 pub use interface::Interface;
 pub use paint::paint;
-pub use panel::Seen;
 pub use script::Script;
 pub use state::{Mode, State};
 pub use viewer::{Engines, Shown, Viewer};

@@ -85,6 +85,7 @@ mod tests {
         paint(
             state,
             &Shown {
+                scene: &Scene::default(),
                 size: SIZE,
                 ours: &ours,
                 other: other.map(|radiance| vec![radiance; pixels]),

@@ -5,18 +5,10 @@ use super::state::{KEYS, Key, Mode, Partner, State};
 use super::viewer::Shown;
 use crate::means::Distance;
 use arealight::Level;
-use arealight_scene::Scene;
 use egui::{Context, Grid, ScrollArea, Slider, Ui, Window};
 use std::time::Duration;
 
-/// What is shown of which scene.
-pub struct Seen<'a> {
-    /// With its lamps as they are.
-    pub scene: &'a Scene,
-    pub shown: &'a Shown<'a>,
-}
-
-impl Seen<'_> {
+impl Shown<'_> {
     /// What a lamp is called.
     pub fn name(&self, lamp: usize) -> String {
         let light = self.scene.lamps.get(lamp).and_then(|lamp| self.scene.lights.get(lamp.lights.start));
@@ -32,11 +24,11 @@ impl Seen<'_> {
             if state.rougher == 0.0 { String::new() } else { format!(", rougher {:+.2}", state.rougher) };
         let fog = state.fog().map_or_else(String::new, |fog| format!(", fog {:.3}", fog.density));
         let mut lines = vec![format!("{level}, {shadows}{fog}{rougher}, exposure {:+.1}", state.exposure)];
-        if self.shown.times.iter().any(Option::is_some) {
-            let [visibility, shading] = self.shown.times.map(milliseconds);
+        if self.times.iter().any(Option::is_some) {
+            let [visibility, shading] = self.times.map(milliseconds);
             lines.push(format!("shading {shading}, visibility {visibility}"));
         }
-        if let Some((samples, distance)) = self.shown.truth {
+        if let Some((samples, distance)) = self.truth {
             let off = distance.map_or_else(|| "error not known yet".to_owned(), error);
             lines.push(format!("{off}; {samples} samples of the truth"));
         }
@@ -48,7 +40,7 @@ impl Seen<'_> {
 }
 
 /// Shows the panel, and does what is done in it.
-pub fn panel(context: &Context, state: &mut State, seen: &Seen<'_>) {
+pub fn panel(context: &Context, state: &mut State, shown: &Shown<'_>) {
     let height = context.content_rect().height() - 140.0;
     Window::new("Arealight").default_pos([8.0, 8.0]).resizable(false).show(context, |ui| {
         ScrollArea::vertical().max_height(height).show(ui, |ui| {
@@ -57,12 +49,12 @@ pub fn panel(context: &Context, state: &mut State, seen: &Seen<'_>) {
             picture(ui, state);
             ui.separator();
             ui.strong("Lamps");
-            list(ui, state, seen);
+            list(ui, state, shown);
             if let Some(lamp) = state.picked {
-                edit(ui, state, seen, lamp);
+                edit(ui, state, shown, lamp);
             }
             ui.separator();
-            ui.small(format!("effects: {}", seen.shown.effects));
+            ui.small(format!("effects: {}", shown.effects));
             ui.horizontal(|ui| {
                 state.save |= ui.button("Save picture").clicked();
                 if ui.button("Reset").on_hover_text("lamps, camera, exposure, fog, roughness").clicked() {
@@ -117,18 +109,18 @@ fn picture(ui: &mut Ui, state: &mut State) {
         ui.add(Slider::new(&mut state.fog.density, densities).logarithmic(true).text("density"));
     }
     ui.add(
-        Slider::new(&mut state.exposure, -10.0..=10.0).clamping(egui::SliderClamping::Never).text("exposure"),
+        Slider::new(&mut state.exposure, -10.0..=10.0).clamping(egui::SliderClamping::Edits).text("exposure"),
     );
     ui.add(Slider::new(&mut state.rougher, -1.0..=1.0).text("rougher"));
 }
 
 /// The lamps, each with its switch.
-fn list(ui: &mut Ui, state: &mut State, seen: &Seen<'_>) {
+fn list(ui: &mut Ui, state: &mut State, shown: &Shown<'_>) {
     ScrollArea::vertical().id_salt("lamps").max_height(110.0).show(ui, |ui| {
         for lamp in 0..state.lamps.len() {
             let row = ui.horizontal(|ui| {
                 ui.checkbox(&mut state.lamps[lamp].is_on, "");
-                ui.selectable_value(&mut state.picked, Some(lamp), seen.name(lamp))
+                ui.selectable_value(&mut state.picked, Some(lamp), shown.name(lamp))
             });
             if row.inner.hovered() {
                 state.hovered = Some(lamp);
@@ -138,8 +130,8 @@ fn list(ui: &mut Ui, state: &mut State, seen: &Seen<'_>) {
 }
 
 /// What one lamp is.
-fn edit(ui: &mut Ui, state: &mut State, seen: &Seen<'_>, lamp: usize) {
-    let step = 2e-3 * seen.scene.bounds.diagonal().max(1e-6);
+fn edit(ui: &mut Ui, state: &mut State, shown: &Shown<'_>, lamp: usize) {
+    let step = 2e-3 * shown.scene.bounds.diagonal().max(1e-6);
     let Some(edit) = state.lamps.get_mut(lamp) else { return };
     ui.horizontal(|ui| {
         ui.add(Slider::new(&mut edit.stops, -8.0..=8.0).text("stops"));
@@ -151,7 +143,8 @@ fn edit(ui: &mut Ui, state: &mut State, seen: &Seen<'_>, lamp: usize) {
     }
     ui.horizontal(|ui| {
         for side in edit.offset.as_mut() {
-            ui.add(egui::DragValue::new(side).speed(step).max_decimals(3));
+            // Within a range nan and inf, which can be typed, are numbers
+            ui.add(egui::DragValue::new(side).range(-1e9..=1e9).speed(step).max_decimals(3));
         }
         ui.label("moved");
         if ui.small_button("undo").on_hover_text("this lamp as it was").clicked() {
@@ -161,7 +154,7 @@ fn edit(ui: &mut Ui, state: &mut State, seen: &Seen<'_>, lamp: usize) {
 }
 
 /// What levels and effects cost, as far as it is measured.
-pub fn table(context: &Context, seen: &Seen<'_>) {
+pub fn table(context: &Context, shown: &Shown<'_>) {
     let corner = egui::Align2::RIGHT_TOP;
     let window = Window::new("Costs").anchor(corner, [-8.0, 8.0]).resizable(false).collapsible(false);
     window.show(context, |ui| {
@@ -170,7 +163,7 @@ pub fn table(context: &Context, seen: &Seen<'_>) {
                 ui.strong(head);
             }
             ui.end_row();
-            for cost in &seen.shown.costs {
+            for cost in &shown.costs {
                 ui.label(&cost.name);
                 ui.monospace(
                     cost.milliseconds.map_or_else(|| "-".to_owned(), |time| format!("{time:.1} ms")),
@@ -179,7 +172,7 @@ pub fn table(context: &Context, seen: &Seen<'_>) {
                 ui.end_row();
             }
         });
-        let [done, all] = seen.shown.measured;
+        let [done, all] = shown.measured;
         if done < all {
             ui.add(
                 egui::ProgressBar::new(done as f32 / all as f32).text(format!("measured {done} of {all}")),

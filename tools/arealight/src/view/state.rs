@@ -246,9 +246,6 @@ impl State {
             Event::Move(at) => {
                 let drag = [(at[0] - self.pointer[0]) * aspect, at[1] - self.pointer[1]];
                 self.pointer = at;
-                if self.grip == Grip::Nothing {
-                    self.hovered = self.lamp_at(at, scene, aspect).map(|(lamp, _)| lamp);
-                }
                 self.drag(drag);
             }
             Event::Release => self.grip = Grip::Nothing,
@@ -313,6 +310,14 @@ impl State {
                 Grip::Lamp(lamp, distance)
             }
             None => Grip::View,
+        }
+    }
+
+    /// Finds the lamp under the pointer, where nothing is held; none where it is over the panel.
+    pub fn hover(&mut self, scene: &Scene, aspect: f64, is_panel: bool) {
+        if self.grip == Grip::Nothing {
+            let lamp = if is_panel { None } else { self.lamp_at(self.pointer, scene, aspect) };
+            self.hovered = lamp.map(|(lamp, _)| lamp);
         }
     }
 
@@ -412,6 +417,7 @@ mod tests {
 
         state.apply(Event::Move([0.5, 0.5]), &scene, ASPECT);
         assert_eq!((state.orbit, &state.lamps), (state.home, &lamps), "nothing is held");
+        state.hover(&scene, ASPECT, false);
         assert_eq!(state.hovered, on(&[0.5, 0.5]).map(|(lamp, _)| lamp));
         state.apply(Event::Press { at: dark, second: false }, &scene, ASPECT);
         state.apply(Event::Move([dark[0] + 0.1, dark[1]]), &scene, ASPECT);

@@ -108,6 +108,8 @@ pub struct Viewer<'a> {
 
 /// What there is to show.
 pub struct Shown<'v> {
+    /// With its lamps as they are.
+    pub scene: &'v Scene,
     /// The picture's size.
     pub size: [u32; 2],
     /// Our radiance.
@@ -403,6 +405,7 @@ impl<'a> Viewer<'a> {
             Mode::Wipe(Partner::Truth) | Mode::Error => truth.map(Means::mean),
         };
         Shown {
+            scene: &self.scene,
             size: self.size,
             ours,
             other,

@@ -3,7 +3,6 @@
 
 use super::interface::Interface;
 use super::paint;
-use super::panel::Seen;
 use super::script::Script;
 use super::state::{Event, Key, State};
 use super::viewer::Viewer;
@@ -162,10 +161,11 @@ impl Desk<'_> {
         }
         let coarse = if began < self.rest { self.coarse } else { 1 };
         let fail = |error| gpu::failure(error, self.scene);
-        let now = Some((self.state.clone(), self.size.map(|side| side.div_ceil(coarse))));
+        let size = self.size.map(|side| side.div_ceil(coarse));
+        let now = Some((self.state.clone(), size));
         // What is done in the panel shows at once: the picture converges in the next frame
         if !self.interface.is_asked() || self.drawn != now {
-            self.viewer.resize(self.size.map(|side| side.div_ceil(coarse))).map_err(fail)?;
+            self.viewer.resize(size).map_err(fail)?;
             self.viewer.draw(&self.state, self.samples).map_err(fail)?;
             self.drawn = now;
         }
@@ -176,8 +176,7 @@ impl Desk<'_> {
             frame.save_png(path.as_ref())?;
             eprintln!("wrote {path}");
         }
-        let seen = Seen { scene: self.viewer.scene(), shown: &shown };
-        self.interface.draw(&mut frame, &mut self.state, &seen);
+        self.interface.draw(&mut frame, &mut self.state, &shown);
         let Some((window, surface)) = &mut self.window else { return Ok(()) };
         surface.resize(width, height).map_err(|error| no_window(&error))?;
         let mut pixels = surface.buffer_mut().map_err(|error| no_window(&error))?;
