@@ -1,20 +1,24 @@
 //! Files that are whole or not there, however a program ends.
 
-use std::fs::OpenOptions;
+use std::collections::hash_map::RandomState;
+use std::fs::{File, OpenOptions};
+use std::hash::BuildHasher;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use tempfile::{Builder, NamedTempFile};
 
-/// Names of files on their way.
+/// Names of files on their way, where they need one.
 const NAMES: (&str, &str) = (".arealight-", ".new");
 
 /// How old such a file is that nobody writes any more: it is written at once.
 const STALE: Duration = Duration::from_secs(600);
 
-/// A file on its way to `path`, of another name until it is whole.
+/// A file on its way to `path`. On Linux it has no name until it is whole, so that nothing is left of it
+/// where the program is killed; where that cannot be, one that is removed.
 pub struct WholeFile {
-    file: NamedTempFile,
+    file: File,
+    name: Option<PathBuf>,
+    folder: PathBuf,
     path: PathBuf,
 }
 
@@ -27,28 +31,50 @@ impl WholeFile {
             // A file that may not be written is not replaced, although its folder would allow it
             OpenOptions::new().append(true).open(&path)?;
         }
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        sweep(folder);
-        let mut builder = Builder::new();
-        builder.prefix(NAMES.0).suffix(NAMES.1);
-        // What the user's mask leaves, not what temporary files have
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        // Without the name, which is none of the user's
-        let file = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = folder.unwrap_or(Path::new(".")).to_owned();
+        sweep(&folder);
+        let (file, name) = if let Ok(file) = nameless(&folder) {
+            (file, None)
+        } else {
+            let name = fresh(&folder);
+            (OpenOptions::new().write(true).create_new(true).open(&name)?, Some(name))
+        };
         if let Some(there) = there {
-            file.as_file().set_permissions(there.permissions())?;
+            file.set_permissions(there.permissions())?;
         }
-        Ok(Self { file, path })
+        Ok(Self { file, name, folder, path })
     }
 
     /// Writes all of it.
     pub fn write(mut self, bytes: &[u8]) -> io::Result<()> {
         self.file.write_all(bytes)?;
-        self.file.as_file().sync_all()?;
-        self.file.persist(&self.path)?;
+        self.file.sync_all()?;
+        let name = if let Some(name) = self.name.clone() {
+            name
+        } else {
+            let name = fresh(&self.folder);
+            link(&self.file, &name)?;
+            self.name.insert(name).clone()
+        };
+        std::fs::rename(name, &self.path)?;
+        self.name = None;
         Ok(())
     }
+}
+
+impl Drop for WholeFile {
+    fn drop(&mut self) {
+        if let Some(name) = &self.name {
+            let _ = std::fs::remove_file(name);
+        }
+    }
+}
+
+/// A name that no file in `folder` has.
+fn fresh(folder: &Path) -> PathBuf {
+    let (start, end) = NAMES;
+    folder.join(format!("{start}{:016x}{end}", RandomState::new().hash_one(std::process::id())))
 }
 
 fn sweep(folder: &Path) {
@@ -62,10 +88,39 @@ fn sweep(folder: &Path) {
     }
 }
 
+/// Where an open file can be found, to give it a name.
+#[cfg(target_os = "linux")]
+const OPEN_FILES: &str = "/proc/self/fd";
+
+#[cfg(target_os = "linux")]
+fn nameless(folder: &Path) -> io::Result<File> {
+    use std::os::unix::fs::OpenOptionsExt;
+    std::fs::metadata(OPEN_FILES)?;
+    let flags = rustix::fs::OFlags::TMPFILE.bits().cast_signed();
+    OpenOptions::new().write(true).custom_flags(flags).mode(0o666).open(folder)
+}
+
+#[cfg(target_os = "linux")]
+fn link(file: &File, name: &Path) -> io::Result<()> {
+    use rustix::fs::{AtFlags, CWD, linkat};
+    use std::os::fd::AsRawFd;
+    let open = format!("{OPEN_FILES}/{}", file.as_raw_fd());
+    Ok(linkat(CWD, open, CWD, name, AtFlags::SYMLINK_FOLLOW)?)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn nameless(_: &Path) -> io::Result<File> {
+    Err(io::ErrorKind::Unsupported.into())
+}
+
+#[cfg(not(target_os = "linux"))]
+fn link(_: &File, _: &Path) -> io::Result<()> {
+    Err(io::ErrorKind::Unsupported.into())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::fs::File;
     use std::time::SystemTime;
 
     #[test]
@@ -83,5 +138,17 @@ mod tests {
         let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
         names.sort();
         assert_eq!(names, [".arealight-4567.new", "a", "arealight.new"]);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_is_on_its_way_has_no_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let begun = WholeFile::begin(folder.path().join("a")).unwrap();
+        // A file system that has no such files gives it one, which goes with it
+        let names = || std::fs::read_dir(folder.path()).unwrap().count();
+        assert_eq!(names(), usize::from(begun.name.is_some()));
+        drop(begun);
+        assert_eq!(names(), 0);
     }
 }
