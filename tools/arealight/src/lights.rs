@@ -14,6 +14,9 @@ pub struct LightArguments {
     /// without it they are left out, but those whose `extras.arealight.radius` says one
     #[arg(long, value_name = "RADIUS", value_parser = parse_radius)]
     light_size: Option<f64>,
+    /// Show the scene's animations at this time, in seconds; without it the scene is at rest
+    #[arg(long, value_name = "SECONDS", value_parser = parse_time, allow_negative_numbers = true)]
+    time: Option<f64>,
     /// What lights the scene: what the file has (`file`), or that and three softboxes around what the camera
     /// sees, for models without lights (`studio`)
     #[arg(long, value_name = "RIG", default_value = "file")]
@@ -37,7 +40,10 @@ impl LightArguments {
         aspect: f64,
     ) -> Result<(Scene, Camera), Failure> {
         let mut scene = match path {
-            Some(path) => read(path, self.light_size)?,
+            Some(path) => {
+                let (light_size, time) = (self.light_size, self.time);
+                read(path, LoadOptions { light_size, time, ..LoadOptions::default() })?
+            }
             None => demo()?,
         };
         let path = scene_name(path);
@@ -53,9 +59,9 @@ impl LightArguments {
     }
 }
 
-/// Reads a scene, its points and spots of a radius.
-pub fn read(path: &Path, light_size: Option<f64>) -> Result<Scene, Failure> {
-    let options = LoadOptions { light_size, memory: memory::limit() };
+/// Reads a scene, with what the file leaves open; as much as there is memory for.
+pub fn read(path: &Path, options: LoadOptions) -> Result<Scene, Failure> {
+    let options = LoadOptions { memory: memory::limit(), ..options };
     Scene::load_with(path, options).map_err(|error| Failure::Scene(error.to_string()))
 }
 
@@ -67,6 +73,11 @@ pub fn scene_name(path: Option<&Path>) -> PathBuf {
 fn parse_radius(text: &str) -> Result<f64, String> {
     let radius = text.parse().ok().filter(|radius| (1e-6..=1e6).contains(radius));
     radius.ok_or_else(|| "must be a radius from 1e-6 to 1e6 m".to_owned())
+}
+
+fn parse_time(text: &str) -> Result<f64, String> {
+    let time = text.parse().ok().filter(|time: &f64| time.is_finite());
+    time.ok_or_else(|| "must be a time in seconds".to_owned())
 }
 
 /// The scene that is shown where no file is given.

@@ -4,10 +4,15 @@ use crate::bounds::Bounds;
 use crate::weld;
 use glam::DVec3;
 use std::collections::HashMap;
+use std::f64::consts::PI;
 
-/// Which triangles belong to a connected part that is closed (each edge is shared by exactly two of its
-/// triangles, which run along it in opposite directions) and faces outwards (its signed volume is positive).
-/// `rounding` is how far positions may be off in any case.
+/// The most of a part's area that its holes may have, for it to have an inside: the ends of a long tube, as
+/// curves with a bevel leave them open.
+const HOLES: f64 = 0.05;
+
+/// Which triangles belong to a connected part that is closed up to small holes (other edges are shared by
+/// exactly two of its triangles, which run along them in opposite directions) and faces outwards (its signed
+/// volume is positive). `rounding` is how far positions may be off in any case.
 pub(crate) fn closed(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f64) -> Vec<bool> {
     let corners = welded(positions, triangles, rounding);
     let parts = connected(&corners);
@@ -21,9 +26,23 @@ pub(crate) fn closed(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f64)
         passed.entry(sorted(edge)).or_default()[way] += 1;
     }
     for (triangle, part) in corners.iter().zip(&parts).filter(|(triangle, _)| has_sides(triangle)) {
-        if edges(triangle).iter().any(|edge| passed[&sorted(*edge)] != [1, 1]) {
-            is_closed[*part] = false;
-        }
+        let ways = edges(triangle).map(|edge| passed[&sorted(edge)]);
+        is_closed[*part] &= ways.iter().all(|way| matches!(way, [1, 1] | [1, 0] | [0, 1]));
+    }
+    let borders = corners.iter().zip(triangles).zip(&parts).filter(|((corners, _), _)| has_sides(corners));
+    let borders = borders.flat_map(|((corners, triangle), part)| {
+        let ends = edges(corners).into_iter().zip(edges(triangle));
+        ends.filter(|(edge, _)| passed[&sorted(*edge)] != [1, 1]).map(|(edge, ends)| (*part, edge, ends))
+    });
+    let borders: Vec<(usize, [u32; 2], [u32; 2])> = borders.collect();
+    let holes = holes(positions, &borders, triangles.len());
+    let mut areas = vec![0.0; triangles.len()];
+    for (triangle, part) in triangles.iter().zip(&parts) {
+        let [a, b, c] = triangle.map(|index| positions[index as usize]);
+        areas[*part] += 0.5 * (b - a).cross(c - a).length();
+    }
+    for (part, is_closed) in is_closed.iter_mut().enumerate() {
+        *is_closed &= holes[part] <= HOLES * areas[part];
     }
     // Six times the volume, about a corner of the part, which costs no digits where the mesh is far away
     let mut volumes = vec![0.0; triangles.len()];
@@ -33,6 +52,30 @@ pub(crate) fn closed(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f64)
         volumes[*part] += a.cross(b).dot(c);
     }
     parts.iter().map(|part| is_closed[*part] && volumes[*part] > 0.0).collect()
+}
+
+/// The area of each part's holes, or more: what edges that join enclose at most, the disk of their length.
+/// `borders` has of each edge its part, its ends by their numbers and by their positions'.
+fn holes(positions: &[DVec3], borders: &[(usize, [u32; 2], [u32; 2])], parts: usize) -> Vec<f64> {
+    let mut parent: Vec<usize> = (0..borders.len()).collect();
+    let mut owner: HashMap<u32, usize> = HashMap::new();
+    for (number, (_, edge, _)) in borders.iter().enumerate() {
+        for end in edge {
+            let neighbour = *owner.entry(*end).or_insert(number);
+            let (a, b) = (root(&mut parent, neighbour), root(&mut parent, number));
+            parent[a.max(b)] = a.min(b);
+        }
+    }
+    let mut lengths = vec![0.0; borders.len()];
+    for (number, (_, _, ends)) in borders.iter().enumerate() {
+        let [from, to] = ends.map(|end| positions[end as usize]);
+        lengths[root(&mut parent, number)] += from.distance(to);
+    }
+    let mut areas = vec![0.0; parts];
+    for ((part, ..), length) in borders.iter().zip(lengths) {
+        areas[*part] += length * length / (4.0 * PI);
+    }
+    areas
 }
 
 /// The triangles' corners, with one number for all vertices in one place.

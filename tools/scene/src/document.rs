@@ -254,18 +254,33 @@ impl Document {
     }
 }
 
-/// The JSON's root. A scene may be without `nodes`, which the gltf crate insists on.
+/// The JSON's root. A scene may be without `nodes`, and an extension's channel of an animation without `node`,
+/// which the gltf crate insists on.
 fn parse_root(text: &[u8]) -> serde_json::Result<json::Root> {
     let failure = match serde_json::from_slice(text) {
-        Err(error) if error.to_string().contains("missing field `nodes`") => error,
+        Err(error) if error.to_string().contains("missing field `node") => error,
         other => return other,
     };
     let mut root: serde_json::Value = serde_json::from_slice(text)?;
-    let scenes = root.get_mut("scenes").and_then(serde_json::Value::as_array_mut);
-    for scene in scenes.into_iter().flatten().filter_map(serde_json::Value::as_object_mut) {
+    for scene in objects(&mut root, "scenes") {
         scene.entry("nodes").or_insert_with(|| serde_json::json!([]));
     }
+    for animation in objects(&mut root, "animations") {
+        let channels = animation.get_mut("channels").and_then(serde_json::Value::as_array_mut);
+        if let Some(channels) = channels {
+            channels.retain(|channel| channel["target"].get("node").is_some());
+        }
+    }
     serde_json::from_slice(&serde_json::to_vec(&root)?).map_err(|_| failure)
+}
+
+/// The objects of one of the root's arrays.
+fn objects<'a>(
+    root: &'a mut serde_json::Value,
+    name: &str,
+) -> impl Iterator<Item = &'a mut serde_json::Map<String, serde_json::Value>> {
+    let array = root.get_mut(name).and_then(serde_json::Value::as_array_mut);
+    array.into_iter().flatten().filter_map(serde_json::Value::as_object_mut)
 }
 
 /// `length` bytes from `offset` on.

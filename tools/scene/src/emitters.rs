@@ -111,7 +111,7 @@ impl Emitters {
                 continue;
             }
             if !two_sided {
-                messages.note(place, "doubleSided, but a closed surface: it shines outwards only");
+                messages.note(place, "doubleSided, but closed up to small holes: it shines outwards only");
             }
             self.add_polygons(source, &triangles, two_sided, messages);
         }

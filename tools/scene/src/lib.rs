@@ -33,6 +33,7 @@
 #![forbid(unsafe_code)]
 
 mod accessor;
+mod animations;
 mod area_lights;
 mod attributes;
 mod borders;

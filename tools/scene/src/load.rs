@@ -7,8 +7,8 @@ use crate::error::SceneError;
 use crate::messages::Messages;
 use crate::scene::{NO_LIGHTS, Scene, SceneLamp};
 use crate::{
-    area_lights, compressed_views, draco, extensions, light_textures, materials, meshes, nodes, primitives,
-    punctual, skins,
+    animations, area_lights, compressed_views, draco, extensions, light_textures, materials, meshes, nodes,
+    primitives, punctual, skins,
 };
 use std::cell::LazyCell;
 use std::path::Path;
@@ -19,6 +19,8 @@ pub struct LoadOptions {
     /// The radius of points and spots of `KHR_lights_punctual`, in metres, where the file says none. Without
     /// they are left out, with a warning.
     pub light_size: Option<f64>,
+    /// When the animations are shown, in seconds; without, nothing has moved yet.
+    pub time: Option<f64>,
     /// The most memory that the scene may take, in bytes; else [`crate::memory_of`] what its files hold.
     pub memory: Option<u64>,
 }
@@ -61,9 +63,14 @@ const STRONG: f32 = 0.7;
 fn read(mut document: Document, name: String, options: LoadOptions) -> Result<Scene, SceneError> {
     compressed_views::decompress(&mut document)?;
     draco::decompress(&mut document)?;
-    let document = &document;
     let messages = &mut Messages::default();
-    warn_of_what_is_ignored(document, messages);
+    match options.time {
+        Some(time) => animations::apply(&mut document, time, messages)?,
+        None if document.root.animations.is_empty() => {}
+        None => messages.warn("animations", "the scene is shown at rest, not at a time (--time)"),
+    }
+    let document = &document;
+    extensions::warn_of_unread(&document.root, messages);
     // Place the nodes in the world, and read what their meshes are and what they are made of
     let nodes = nodes::place(document, messages)?;
     let primitives = primitives::read(document, &nodes, messages)?;
@@ -126,12 +133,4 @@ fn read(mut document: Document, name: String, options: LoadOptions) -> Result<Sc
         warnings,
         notes,
     })
-}
-
-fn warn_of_what_is_ignored(document: &Document, messages: &mut Messages) {
-    let animations = document.root.animations.len();
-    if animations > 0 {
-        messages.warn("animations", format!("{animations} ignored; the scene is shown at rest"));
-    }
-    extensions::warn_of_unread(&document.root, messages);
 }

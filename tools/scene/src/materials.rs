@@ -305,13 +305,22 @@ impl Reader<'_, '_> {
 
     /// emissiveFactor times `KHR_materials_emissive_strength`.
     fn emission(&mut self, source: &json::Material) -> Vec3 {
-        let factor = Vec3::from_array(self.fractions("emissiveFactor", source.emissive_factor.0));
+        let factor = Vec3::from_array(source.emissive_factor.0);
+        if factor.min_element() < 0.0 {
+            self.warn(format!("emissiveFactor {:?} is negative: clamped", factor.to_array()));
+        } else if factor.max_element() > 1.0 {
+            let text = format!("emissiveFactor {:?} is above 1: a strength, too", factor.to_array());
+            self.messages.note(self.place.as_str(), text);
+        }
+        let factor = factor.max(Vec3::ZERO);
         let strength = source.extensions.as_ref().and_then(|e| e.emissive_strength.as_ref());
         let strength = strength.map_or(1.0, |s| s.emissive_strength.0);
-        if strength.is_finite() && strength >= 0.0 {
+        if (factor * strength).is_finite() && strength >= 0.0 {
             return factor * strength;
         }
-        self.warn(format!("emissiveStrength {strength} must be finite and not negative: 0 is used"));
+        self.warn(format!(
+            "emissiveStrength {strength} must be finite and not negative: 0 is used"
+        ));
         Vec3::ZERO
     }
 

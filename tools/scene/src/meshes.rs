@@ -77,15 +77,15 @@ fn place_primitive<'a>(
     triangles: &mut Vec<Triangle>,
 ) -> Result<Instance<'a>, SceneError> {
     let at = |vertex: usize| &moves[if moves.len() == 1 { 0 } else { vertex }];
-    let in_space = primitive.positions.iter().map(|p| DVec3::from_array(p.map(f64::from)));
+    let (in_space, normals) = primitive.morphed(node.weights.as_ref().unwrap_or(&primitive.weights));
     let positions: Vec<DVec3> =
-        in_space.enumerate().map(|(i, p)| at(i).to_world.transform_point3(p)).collect();
+        in_space.iter().enumerate().map(|(i, p)| at(i).to_world.transform_point3(*p)).collect();
     if let Some(bad) = positions.iter().position(|p| p.is_nan() || p.abs().max_element() > MAX_COORDINATE) {
         let field = format!("{}.POSITION[{bad}] in the world", primitive.field);
         return Err(document.not_finite(field, positions[bad].to_array()));
     }
-    let normal = |(i, n): (usize, &Vec3)| (at(i).of_normals * n.as_dvec3()).normalize_or_zero().as_vec3();
-    let normals: Vec<Vec3> = primitive.normals.iter().enumerate().map(normal).collect();
+    let normal = |(i, n): (usize, &DVec3)| (at(i).of_normals * *n).normalize_or_zero().as_vec3();
+    let normals: Vec<Vec3> = normals.iter().enumerate().map(normal).collect();
     let mut kept = Vec::with_capacity(primitive.triangles.len());
     for (number, &[a, b, c]) in primitive.triangles.iter().enumerate() {
         let mirrored = at(a as usize).is_mirrored;
@@ -109,8 +109,7 @@ fn place_primitive<'a>(
         triangles.push(Triangle { positions, normals, uvs, tangents, colors, material, lamp: false });
         kept.push(corners.map(|i| i as u32));
     }
-    let largest =
-        primitive.positions.iter().flatten().fold(0.0_f64, |largest, x| largest.max(f64::from(x.abs())));
+    let largest = in_space.iter().fold(0.0_f64, |largest, p| largest.max(p.abs().max_element()));
     let stretch = moves.iter().map(|vertex| vertex.stretch).fold(0.0, f64::max);
     let name = node.name.as_ref().or(primitive.mesh_name.as_ref()).filter(|name| !name.is_empty());
     Ok(Instance {

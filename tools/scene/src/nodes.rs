@@ -27,6 +27,8 @@ pub(crate) struct PlacedNode {
     pub mesh: Option<usize>,
     /// Its skin.
     pub skin: Option<usize>,
+    /// How far its mesh is morphed to each target; none where the mesh says.
+    pub weights: Option<Vec<f64>>,
     /// Its camera.
     camera: Option<usize>,
     /// Its `EXT_lights_area` extension.
@@ -72,6 +74,7 @@ pub(crate) fn place(document: &Document, messages: &mut Messages) -> Result<Vec<
             world,
             mesh: node.mesh.map(|m| m.value()),
             skin: node.skin.map(|s| s.value()),
+            weights: document.places[index].weights.clone(),
             camera: node.camera.map(|c| c.value()),
             area_light: extension(AREA_LIGHTS),
             punctual_light: extension(PUNCTUAL_LIGHTS),
@@ -89,6 +92,7 @@ pub(crate) fn place(document: &Document, messages: &mut Messages) -> Result<Vec<
                     world: world * local,
                     mesh: once.mesh,
                     shape: once.shape.clone(),
+                    weights: once.weights.clone(),
                     skin: None,
                     camera: None,
                     area_light: None,

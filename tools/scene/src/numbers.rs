@@ -13,6 +13,8 @@ pub(crate) struct Place {
     pub translation: Option<[f64; 3]>,
     pub rotation: Option<[f64; 4]>,
     pub scale: Option<[f64; 3]>,
+    /// How far its mesh is morphed to each target; none where the mesh says.
+    pub weights: Option<Vec<f64>>,
 }
 
 /// Those of a JSON's nodes.

@@ -10,7 +10,8 @@ use crate::nodes::PlacedNode;
 use crate::skins;
 use crate::tangents;
 use crate::uv_mapping::{Mappings, UvMapping};
-use glam::{Vec2, Vec3, Vec4};
+use glam::{DVec3, Vec2, Vec3, Vec4};
+use gltf::json;
 use gltf::json::accessor::Type;
 use gltf::json::mesh::{Mode, Semantic};
 use gltf::json::validation::Checked;
@@ -38,6 +39,10 @@ pub(crate) struct Primitive {
     pub light_uvs: Option<Vec<Vec2>>,
     /// [`crate::Triangle::colors`], as many as positions; none where the file has none.
     pub colors: Vec<[u8; 4]>,
+    /// What its mesh may be morphed to.
+    pub targets: Vec<MorphTarget>,
+    /// How far it is to each, where a node does not say.
+    pub weights: Vec<f64>,
     /// What moves each vertex, where the file says it.
     pub influences: Option<Vec<skins::Influence>>,
     /// Indices of vertices that exist.
@@ -45,6 +50,30 @@ pub(crate) struct Primitive {
     /// Of each triangle's corners, [`tangents::read`]; empty where no material needs them, or nothing says
     /// what they are.
     pub tangents: Vec<[Vec4; 3]>,
+}
+
+/// What is added to vertices: as many as positions, or none.
+pub(crate) struct MorphTarget {
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+}
+
+impl Primitive {
+    /// Positions and normals, morphed by as many weights as there are; tangents stay.
+    pub fn morphed(&self, weights: &[f64]) -> (Vec<DVec3>, Vec<DVec3>) {
+        let wide = |vector: &[f32; 3]| DVec3::from_array(vector.map(f64::from));
+        let mut positions: Vec<DVec3> = self.positions.iter().map(wide).collect();
+        let mut normals: Vec<DVec3> = self.normals.iter().map(|normal| normal.as_dvec3()).collect();
+        for (target, weight) in self.targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+            let all = [(&mut positions, &target.positions), (&mut normals, &target.normals)];
+            for (vectors, added) in all {
+                for (vector, added) in vectors.iter_mut().zip(added) {
+                    *vector += wide(added) * *weight;
+                }
+            }
+        }
+        (positions, normals)
+    }
 }
 
 /// The primitives of each of the file's meshes; those of meshes that no node has are not read.
@@ -75,15 +104,15 @@ fn read_mesh(
         Some(name) => format!("meshes[{index}] '{name}'"),
         None => format!("meshes[{index}]"),
     };
-    if mesh.primitives.iter().any(|p| p.targets.as_ref().is_some_and(|targets| !targets.is_empty())) {
-        messages.warn(place.as_str(), "morph targets ignored; the mesh is shown at rest");
-    }
     let mut primitives = Vec::new();
     for (number, source) in mesh.primitives.iter().enumerate() {
         let field = format!("{place}.primitives[{number}]");
         let attributes = Attributes { document, source, field: &field };
         if let Some(mode) = mode_of_triangles(&attributes, messages)? {
-            primitives.push(read_primitive(&attributes, mode, mesh.name.clone(), messages)?);
+            let mut primitive = read_primitive(&attributes, mode, mesh.name.clone(), messages)?;
+            let weights = mesh.weights.iter().flatten();
+            primitive.weights = weights.map(|weight| f64::from(*weight)).collect();
+            primitives.push(primitive);
         }
     }
     Ok(primitives)
@@ -156,9 +185,30 @@ fn read_primitive(
         light_uvs,
         colors,
         influences,
+        targets: targets(attributes, count)?,
+        weights: vec![],
         triangles,
         tangents: tangents.unwrap_or_default(),
     })
+}
+
+/// What a primitive may be morphed to.
+fn targets(attributes: &Attributes<'_>, count: usize) -> Result<Vec<MorphTarget>, SceneError> {
+    let &Attributes { document, source, field } = attributes;
+    let read = |accessor: Option<json::Index<json::Accessor>>, name: String| {
+        let Some(accessor) = accessor else { return Ok(vec![]) };
+        let added = accessor::floats::<3>(document, accessor.value(), &name)?;
+        if added.len() == count {
+            return Ok(added);
+        }
+        Err(document.invalid(name, format!("{} for {count} positions", added.len())))
+    };
+    let target = |(number, target): (usize, &json::mesh::MorphTarget)| {
+        let field = format!("{field}.targets[{number}]");
+        let positions = read(target.positions, format!("{field}.POSITION"))?;
+        Ok(MorphTarget { positions, normals: read(target.normals, format!("{field}.NORMAL"))? })
+    };
+    source.targets.iter().flatten().enumerate().map(target).collect()
 }
 
 /// Texture coordinates as a material's textures are read at, where the file has them.

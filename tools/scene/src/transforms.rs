@@ -60,6 +60,7 @@ pub(crate) fn of_instances(
             translation: translations.as_ref().map(|values| values[i].map(f64::from)),
             rotation: rotations.as_ref().map(|values| values[i].map(f64::from)),
             scale: scales.as_ref().map(|values| values[i].map(f64::from)),
+            weights: None,
         });
         local.map_err(|problem| document.invalid(field(&format!("[{i}]")), problem))
     };

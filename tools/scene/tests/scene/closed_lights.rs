@@ -10,7 +10,8 @@ use glam::DVec3;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
-const NOTE: &str = "light 'lamp' (node 0): doubleSided, but a closed surface: it shines outwards only";
+const NOTE: &str =
+    "light 'lamp' (node 0): doubleSided, but closed up to small holes: it shines outwards only";
 
 fn lamp(shape: &Shape, double_sided: bool) -> Scene {
     // Mirrored and turned, as artists do
@@ -195,4 +196,22 @@ fn where_alpha_makes_holes_there_is_no_inside() {
     writer.root["materials"][0]["alphaMode"] = json!("MASK");
     let scene = load(writer);
     assert!(scene.lights[0].two_sided && scene.notes.is_empty());
+}
+
+#[test]
+fn a_long_tube_without_caps_shines_outwards_and_a_short_one_inwards_too() {
+    for (height, closed) in [(8.0, true), (2.0, false)] {
+        let mut tube = cylinder(0.2, height, 12);
+        let side = |corners: &[u32]| corners.iter().any(|&i| tube.normals[i as usize][1].abs() < 0.5);
+        tube.indices =
+            tube.indices.chunks_exact(3).filter(|corners| side(corners)).flatten().copied().collect();
+        let scene = lamp(&tube, true);
+        assert!(!scene.lights.is_empty() && scene.lights.iter().all(|light| light.two_sided != closed));
+        assert_eq!(scene.notes.iter().any(|note| note.to_string() == NOTE), closed);
+        // Inside out it is no body
+        for corners in tube.indices.chunks_exact_mut(3) {
+            corners.swap(0, 1);
+        }
+        assert!(lamp(&tube, true).lights.iter().all(|light| light.two_sided));
+    }
 }

@@ -1,6 +1,7 @@
 //! Scenes from files made here, good and bad, and the project's own.
 
 mod allocations;
+mod animations;
 mod closed_lights;
 mod compressed_views;
 mod draco;

@@ -94,10 +94,7 @@ fn what_is_out_of_range_or_unknown_is_said() {
             json!({ "pbrMetallicRoughness": { "roughnessFactor": 1.5 } }),
             "roughnessFactor [1.5] is not in [0, 1]: clamped",
         ),
-        (
-            json!({ "emissiveFactor": [0, 0, -1] }),
-            "emissiveFactor [0.0, 0.0, -1.0] is not in [0, 1]: clamped",
-        ),
+        (json!({ "emissiveFactor": [0, 0, -1] }), "emissiveFactor [0.0, 0.0, -1.0] is negative: clamped"),
         (
             json!({ "alphaMode": "BLEND" }),
             "alphaMode BLEND: seen whole where alpha is 0.5 or more; its shadow is blended",
@@ -138,6 +135,14 @@ fn what_is_out_of_range_or_unknown_is_said() {
         assert_eq!(warnings(&scene), [format!("material '#0': {text}")]);
         assert!((0.0..=1.0).contains(&scene.materials[0].material.roughness));
     }
+}
+
+#[test]
+fn an_emissive_factor_above_one_is_a_strength() {
+    let scene = load(panel_with(json!({ "emissiveFactor": [6, 3, 0] })));
+    assert_eq!(scene.lights[0].radiance.to_array(), [6.0, 3.0, 0.0]);
+    let notes: Vec<String> = scene.notes.iter().map(ToString::to_string).collect();
+    assert_eq!(notes, ["material '#0': emissiveFactor [6.0, 3.0, 0.0] is above 1: a strength, too"]);
 }
 
 #[test]

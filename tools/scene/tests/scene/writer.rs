@@ -12,6 +12,7 @@ pub struct Shape {
 }
 
 /// A glTF file in the making.
+#[derive(Clone)]
 pub struct Writer {
     pub root: Value,
     pub buffer: Vec<u8>,

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::{lights, progress};
 use arealight_benches::materials::{self, Options};
 use arealight_benches::sections::Markers;
-use arealight_scene::Scene;
+use arealight_scene::{LoadOptions, Scene};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -39,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None => {
             Scene::from_bytes(BALLS, "materials.glb").map_err(|error| Failure::input("materials.glb", error))
         }
-        Some(path) => lights::read(path, None),
+        Some(path) => lights::read(path, LoadOptions::default()),
     }?;
     let options = Options { size: [size * 16 / 9, *size], samples: *samples };
     let host = ends.host()?;

@@ -7,6 +7,7 @@ use crate::commands::render::parse_size;
 use crate::failure::Failure;
 use crate::{gpu, lights, output, progress};
 use arealight_benches::ladder::{STEPS_BESIDE_THE_TRUTH, View, beside_the_truth};
+use arealight_scene::LoadOptions;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -92,7 +93,7 @@ impl Arguments {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let format = arguments.format()?;
     let crop = arguments.crop()?;
-    let scene = lights::read(&arguments.scene, None)?;
+    let scene = lights::read(&arguments.scene, LoadOptions::default())?;
     output::check(&arguments.output, [arguments.scene.as_path()])?;
     let host = gpu::host(arguments.device.device.as_deref())?;
 

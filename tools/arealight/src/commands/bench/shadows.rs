@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::{lights, progress};
 use arealight_benches::sections::Markers;
 use arealight_benches::{shadow_levels, shadow_motion};
-use arealight_scene::Scene;
+use arealight_scene::{LoadOptions, Scene};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -63,7 +63,7 @@ impl Arguments {
             let count = if self.motion { FILMED } else { SCENES.len() };
             return SCENES.iter().take(count).map(built_in).collect();
         }
-        self.scenes.iter().map(|path| lights::read(path, None)).collect()
+        self.scenes.iter().map(|path| lights::read(path, LoadOptions::default())).collect()
     }
 
     /// The command that runs the same again, with these options beside the scenes.

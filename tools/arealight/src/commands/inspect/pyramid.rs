@@ -7,7 +7,7 @@ use crate::{gpu, lights};
 use arealight::TexturePart;
 use arealight::pyramid::PyramidSize;
 use arealight_engine::{Engine, EngineError, Of, SourceImage, SourceTexels};
-use arealight_scene::Scene;
+use arealight_scene::{LoadOptions, Scene};
 use glam::DVec3;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -40,7 +40,7 @@ pub fn make(path: &Path, layer: u32, device: Option<&str>) -> Result<Pyramid, Fa
     let ending = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).unwrap_or_default();
     let (name, input) = match ending.as_str() {
         "glb" | "gltf" => {
-            let scene = lights::read(path, None)?;
+            let scene = lights::read(path, LoadOptions::default())?;
             (layer_name(path, &scene, layer)?, Input::Scene(Box::new(scene)))
         }
         _ if layer > 0 => {
