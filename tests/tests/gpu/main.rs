@@ -37,6 +37,7 @@ mod manifest;
 mod many_lights;
 mod masked_shadows;
 mod material_frames;
+mod material_textures;
 mod meshes;
 mod modules;
 mod orthographic;

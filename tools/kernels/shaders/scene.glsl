@@ -159,12 +159,8 @@ vec4 fetch_texel(ArealightGpuTexture image, ivec2 texel) {
     return (image.flags & TEXTURE_SRGB) != 0u ? vec4(linear_from_srgb(color.rgb), color.a) : color;
 }
 
-// Bilinear, decoded to linear before filtering; white where there is no texture.
-vec4 sample_texture(uint index, vec2 uv) {
-    if (index == NO_TEXTURE) {
-        return vec4(1.0);
-    }
-    ArealightGpuTexture image = textures[index];
+// Bilinear, decoded to linear before filtering.
+vec4 sample_image(ArealightGpuTexture image, vec2 uv) {
     vec2 wrapped = vec2(wrap_coordinate(uv.x, (image.flags & TEXTURE_CLAMP_U) != 0u),
                         wrap_coordinate(uv.y, (image.flags & TEXTURE_CLAMP_V) != 0u));
     vec2 position = wrapped * vec2(image.width, image.height) - 0.5;
@@ -175,6 +171,89 @@ vec4 sample_texture(uint index, vec2 uv) {
     vec4 bottom = mix(fetch_texel(image, texel + ivec2(0, 1)), fetch_texel(image, texel + ivec2(1, 1)),
                       weight.x);
     return mix(top, bottom, weight.y);
+}
+
+// The part of a texture that a pixel sees: a parallelogram about `uv`, by its sides.
+struct TextureFootprint {
+    vec2 uv;
+    vec2 along;
+    vec2 across;
+};
+
+// The most places of a long footprint; a longer one is blurred instead.
+const float MOST_PLACES = 8.0;
+
+// Level `level` of an image; the last one where there are fewer.
+ArealightGpuTexture texture_level(ArealightGpuTexture image, int level) {
+    for (int i = 0; i < level && max(image.width, image.height) > 1u; i++) {
+        image.first_texel += image.width * image.height;
+        image.width = max(image.width / 2u, 1u);
+        image.height = max(image.height / 2u, 1u);
+    }
+    return image;
+}
+
+// The mean over a footprint: as many places along its longer side as the shorter one goes into it, each
+// between the two levels whose texels are about as wide. White where there is no texture.
+vec4 sample_footprint(uint index, TextureFootprint footprint) {
+    if (index == NO_TEXTURE) {
+        return vec4(1.0);
+    }
+    ArealightGpuTexture image = textures[index];
+    vec2 size = vec2(image.width, image.height);
+    float along = length(footprint.along * size);
+    float across = length(footprint.across * size);
+    vec2 longer = along > across ? footprint.along : footprint.across;
+    float most = max(along, across);
+    float places = clamp(ceil(most / max(min(along, across), 1.0)), 1.0, MOST_PLACES);
+    float level = clamp(log2(max(max(most / places, min(along, across)), 1.0)), 0.0, 16.0);
+    ArealightGpuTexture fine = texture_level(image, int(level));
+    ArealightGpuTexture coarse = texture_level(image, int(level) + 1);
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 2 * int(places); i++) {
+        float weight = (i & 1) == 0 ? 1.0 - fract(level) : fract(level);
+        if (weight > 0.0) {
+            vec2 uv = footprint.uv + ((float(i >> 1) + 0.5) / places - 0.5) * longer;
+            sum += weight * sample_image((i & 1) == 0 ? fine : coarse, uv);
+        }
+    }
+    return sum / places;
+}
+
+// The textures of a material, in this order.
+const int BASE_COLOR_TEXEL = 0;
+const int METALLIC_ROUGHNESS_TEXEL = 1;
+const int NORMAL_TEXEL = 2;
+const int EMISSION_TEXEL = 3;
+const int COAT_TEXEL = 4;
+const int COAT_ROUGHNESS_TEXEL = 5;
+const int COAT_NORMAL_TEXEL = 6;
+const int SHEEN_COLOR_TEXEL = 7;
+const int SHEEN_ROUGHNESS_TEXEL = 8;
+const int ANISOTROPY_TEXEL = 9;
+const int SPECULAR_TEXEL = 10;
+const int SPECULAR_COLOR_TEXEL = 11;
+const int FILM_TEXEL = 12;
+const int FILM_THICKNESS_TEXEL = 13;
+const int TRANSMISSION_TEXEL = 14;
+const int TRANSMISSION_COLOR_TEXEL = 15;
+const int GLASS_TEXEL = 16;
+const int TEXELS = 17;
+
+// What a pixel sees of each; of all in one place, which drivers compile once.
+vec4[TEXELS] material_texels(ArealightGpuMaterial material, TextureFootprint seen) {
+    uint indices[TEXELS] = uint[TEXELS](
+        material.base_color_texture, material.metallic_roughness_texture, material.normal_texture,
+        material.emission_texture, material.coat_texture, material.coat_roughness_texture,
+        material.coat_normal_texture, material.sheen_color_texture, material.sheen_roughness_texture,
+        material.anisotropy_texture, material.specular_texture, material.specular_color_texture,
+        material.film_texture, material.film_thickness_texture, material.transmission_texture,
+        material.transmission_color_texture, material.glass_texture);
+    vec4 texels_seen[TEXELS];
+    for (int i = 0; i < TEXELS; i++) {
+        texels_seen[i] = sample_footprint(indices[i], seen);
+    }
+    return texels_seen;
 }
 
 vec2 hit_uv(ArealightGpuTriangle triangle, vec2 barycentric) {
@@ -202,8 +281,9 @@ float surface_alpha(ArealightGpuTriangle triangle, vec2 barycentric) {
     if ((material.flags & (MATERIAL_ALPHA_MASK | MATERIAL_ALPHA_BLEND)) == 0u) {
         return 1.0;
     }
-    float alpha = sample_texture(material.base_color_texture, hit_uv(triangle, barycentric)).a
-        * material.base_alpha * vertex_color(triangle, barycentric).a;
+    float alpha = material.base_color_texture == NO_TEXTURE ? 1.0
+        : sample_image(textures[material.base_color_texture], hit_uv(triangle, barycentric)).a;
+    alpha *= material.base_alpha * vertex_color(triangle, barycentric).a;
     return (material.flags & MATERIAL_ALPHA_BLEND) != 0u ? alpha : alpha < material.alpha_cutoff ? 0.0 : 1.0;
 }
 
@@ -230,24 +310,33 @@ TangentAxes tangent_axes(ArealightGpuTriangle triangle, vec2 barycentric, vec3 n
                        * ((triangle.flags & TRIANGLE_MIRRORED) != 0u ? -1.0 : 1.0));
 }
 
-// The shading normal bent by a tangent-space normal texture.
-vec3 bend_normal(TangentAxes axes, uint normal_texture, float scale, vec3 normal, vec2 uv) {
+// The length of the mean of normals, from a normal texture's alpha.
+float mean_length(float alpha) {
+    return 1.0 - (1.0 - alpha) * (1.0 - alpha);
+}
+
+// The shading normal bent by a tangent-space normal texture. Where the pixel sees many normals, what their
+// mean loses goes to the roughness: GGX's squared alpha is twice the variance of slopes, which is that of a
+// von Mises-Fisher lobe whose mean is as long (Toksvig 2005; Banerjee et al. 2005 for the variance).
+vec3 bend_normal(TangentAxes axes, uint normal_texture, vec4 texel, float scale, vec3 normal,
+                 inout float roughness) {
     if (normal_texture == NO_TEXTURE || axes.tangent == vec3(0.0)) {
         return normal;
     }
-    vec3 bend = sample_texture(normal_texture, uv).xyz * 2.0 - 1.0;
+    vec3 bend = texel.xyz * 2.0 - 1.0;
     bend.xy *= scale;
+    float mean = max(mean_length(texel.a), 0.1);
+    float variance = scale * scale * (1.0 - mean * mean) / (mean * (3.0 - mean * mean));
+    float square = roughness * roughness;
+    roughness = sqrt(sqrt(min(square * square + 2.0 * variance, 1.0)));
     return arealight_normalize_or(axes.tangent * bend.x + axes.bitangent * bend.y + normal * bend.z, normal);
 }
 
 // KHR_materials_anisotropy: the texture's direction and the factor's rotation, and both strengths.
 ArealightAnisotropy scene_anisotropy(ArealightGpuMaterial material, TangentAxes axes, float roughness,
-                                     vec2 uv) {
-    vec3 texel = vec3(1.0, 0.5, 1.0);
-    if (material.anisotropy_texture != NO_TEXTURE) {
-        texel = sample_texture(material.anisotropy_texture, uv).rgb;
-    }
-    vec2 direction = texel.rg * 2.0 - 1.0;
+                                     vec4 texel) {
+    bool has_texture = material.anisotropy_texture != NO_TEXTURE;
+    vec2 direction = has_texture ? texel.rg * 2.0 - 1.0 : vec2(1.0, 0.0);
     vec2 turn = material.anisotropy_direction;
     direction = vec2(turn.x * direction.x - turn.y * direction.y, turn.y * direction.x + turn.x
                      * direction.y);
@@ -256,12 +345,30 @@ ArealightAnisotropy scene_anisotropy(ArealightGpuMaterial material, TangentAxes 
     return ArealightAnisotropy(along, strength > 0.0 ? arealight_gltf_anisotropy(roughness, strength) : 0.0);
 }
 
-ScenePoint scene_point(BvhHit hit) {
+// What of the textures a pixel sees at a hit, `steps` being how its place in the triangle's plane changes
+// from pixel to pixel.
+TextureFootprint hit_footprint(ArealightGpuTriangle triangle, vec2 barycentric, vec3 steps[2]) {
+    vec3 u = triangle.p1 - triangle.p0;
+    vec3 v = triangle.p2 - triangle.p0;
+    vec3 normal = cross(u, v);
+    float square = dot(normal, normal);
+    vec2 origin = vec2(triangle.u0, triangle.v0);
+    mat2 to_uv = mat2(vec2(triangle.u1, triangle.v1) - origin, vec2(triangle.u2, triangle.v2) - origin);
+    vec2 sides[2];
+    for (int i = 0; i < 2; i++) {
+        vec2 moved = vec2(dot(cross(steps[i], v), normal), dot(cross(u, steps[i]), normal)) / square;
+        // NaN and infinity, too, where the triangle or the step has no size
+        sides[i] = all(lessThan(abs(moved), vec2(1e6))) ? to_uv * moved : vec2(0.0);
+    }
+    return TextureFootprint(hit_uv(triangle, barycentric), sides[0], sides[1]);
+}
+
+ScenePoint scene_point(BvhHit hit, vec3 steps[2]) {
     ArealightGpuTriangle triangle = triangles[hit.triangle];
     ArealightGpuMaterial material = materials[triangle.material];
     float u = hit.barycentric.x;
     float v = hit.barycentric.y;
-    vec2 uv = hit_uv(triangle, hit.barycentric);
+    vec4 texel[TEXELS] = material_texels(material, hit_footprint(triangle, hit.barycentric, steps));
 
     ScenePoint point;
     // From the vertices, not from the ray: its error does not grow with the distance
@@ -271,42 +378,43 @@ ScenePoint scene_point(BvhHit hit) {
     vec3 normal = arealight_normalize_or(smooth_normal, arealight_normalize_or(face, vec3(0.0, 0.0, 1.0)));
     float side = hit.back ? -1.0 : 1.0;
     TangentAxes axes = tangent_axes(triangle, hit.barycentric, normal);
-    point.normal = side * bend_normal(axes, material.normal_texture, material.normal_scale, normal, uv);
-    point.coat.normal = side * bend_normal(axes, material.coat_normal_texture, material.coat_normal_scale,
-                                           normal, uv);
-    point.coat.weight = material.coat * sample_texture(material.coat_texture, uv).r;
-    point.coat.roughness = material.coat_roughness * sample_texture(material.coat_roughness_texture, uv).g;
-    point.sheen.color = material.sheen_color * sample_texture(material.sheen_color_texture, uv).rgb;
-    point.sheen.roughness = material.sheen_roughness * sample_texture(material.sheen_roughness_texture, uv).a;
+    point.coat.weight = material.coat * texel[COAT_TEXEL].r;
+    point.coat.roughness = material.coat_roughness * texel[COAT_ROUGHNESS_TEXEL].g;
+    point.sheen.color = material.sheen_color * texel[SHEEN_COLOR_TEXEL].rgb;
+    point.sheen.roughness = material.sheen_roughness * texel[SHEEN_ROUGHNESS_TEXEL].a;
 
-    vec4 metallic_roughness = sample_texture(material.metallic_roughness_texture, uv);
-    point.base_color = material.base_color * sample_texture(material.base_color_texture, uv).rgb
+    point.coat.normal = side * bend_normal(axes, material.coat_normal_texture, texel[COAT_NORMAL_TEXEL],
+                                           material.coat_normal_scale, normal, point.coat.roughness);
+
+    point.base_color = material.base_color * texel[BASE_COLOR_TEXEL].rgb
                      * vertex_color(triangle, hit.barycentric).rgb;
-    point.metalness = material.metalness * metallic_roughness.b;
-    point.roughness = material.roughness * metallic_roughness.g;
-    point.anisotropy = scene_anisotropy(material, axes, point.roughness, uv);
+    point.metalness = material.metalness * texel[METALLIC_ROUGHNESS_TEXEL].b;
+    point.roughness = material.roughness * texel[METALLIC_ROUGHNESS_TEXEL].g;
+    point.normal = side * bend_normal(axes, material.normal_texture, texel[NORMAL_TEXEL],
+                                      material.normal_scale, normal, point.roughness);
+    point.anisotropy = scene_anisotropy(material, axes, point.roughness, texel[ANISOTROPY_TEXEL]);
     // KHR_materials_specular: min(reflectance by index and colour, 1) times the weight, which is the grazing
     // reflectance
-    float specular_weight = sample_texture(material.specular_texture, uv).a;
+    float specular_weight = texel[SPECULAR_TEXEL].a;
     point.dielectric_f90 = material.dielectric_f90 * specular_weight;
     point.dielectric_f0 = min(material.dielectric_f0 * specular_weight
-                              * sample_texture(material.specular_color_texture, uv).rgb,
+                              * texel[SPECULAR_COLOR_TEXEL].rgb,
                               vec3(point.dielectric_f90));
-    point.film.weight = material.film_weight * sample_texture(material.film_texture, uv).r;
+    point.film.weight = material.film_weight * texel[FILM_TEXEL].r;
     point.film.ior = material.film_ior;
     point.film.thickness = mix(material.film_least_thickness, material.film_thickness,
-                               sample_texture(material.film_thickness_texture, uv).g);
-    float transmission = material.transmission * sample_texture(material.transmission_texture, uv).a
+                               texel[FILM_THICKNESS_TEXEL].g);
+    float transmission = material.transmission * texel[TRANSMISSION_TEXEL].a
         * (1.0 - point.metalness);
     point.transmitted = transmission * material.transmission_color
-        * sample_texture(material.transmission_color_texture, uv).rgb;
+        * texel[TRANSMISSION_COLOR_TEXEL].rgb;
     // KHR_materials_transmission takes the place of what is diffused, on either side
-    float glass = material.glass * sample_texture(material.glass_texture, uv).r * (1.0 - point.metalness);
+    float glass = material.glass * texel[GLASS_TEXEL].r * (1.0 - point.metalness);
     vec3 pane = glass * point.base_color;
     point.transmitted = (1.0 - glass) * point.transmitted + pane;
     point.pane = arealight_luminance(pane) / max(arealight_luminance(point.transmitted), 1e-30);
     point.base_color *= (1.0 - glass) * (1.0 - transmission);
-    point.emission = material.emission * sample_texture(material.emission_texture, uv).rgb;
+    point.emission = material.emission * texel[EMISSION_TEXEL].rgb;
     return point;
 }
 

@@ -48,6 +48,19 @@ float below_sheen(ScenePoint point, vec3 view) {
     return arealight_sheen_layer(arealight_surface_frame(point.normal, view), point.sheen).base;
 }
 
+// How the place that is seen in a hit's plane changes from pixel to pixel, to the right and downwards; `line`
+// is the line of sight, of which the camera's axes are steps.
+vec3[2] pixel_steps(BvhHit hit, vec3 line, vec2 size, bool parallel) {
+    ArealightGpuTriangle triangle = triangles[hit.triangle];
+    vec3 normal = cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0);
+    float scale = parallel ? 1.0 : hit.distance * inversesqrt(dot(line, line));
+    vec3 steps[2] = vec3[2](2.0 / size.x * constants.right, -2.0 / size.y * constants.up);
+    for (int i = 0; i < 2; i++) {
+        steps[i] = scale * (steps[i] - line * (dot(normal, steps[i]) / dot(normal, line)));
+    }
+    return steps;
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = imageSize(out_radiance);
@@ -75,7 +88,8 @@ void main() {
         imageStore(out_transmitted, pixel, vec4(0.0));
         return;
     }
-    ScenePoint point = scene_point(hit);
+    ScenePoint point = scene_point(hit, pixel_steps(hit, constants.forward + (parallel ? vec3(0.0) : across),
+                                                    vec2(size), parallel));
     imageStore(out_position, pixel, vec4(point.position, float(hit.triangle + 1u)));
     imageStore(out_normal, pixel, vec4(point.normal, point.roughness));
     imageStore(out_base_color, pixel, vec4(point.base_color, point.metalness));

@@ -354,7 +354,8 @@ impl GpuMaterial {
 }
 
 /// A texture of the visibility kernel: a range of the texel buffer, one RGBA8 texel a `u32`, red in the low
-/// byte, rows from the top.
+/// byte, rows from the top. After those come the texels of its smaller levels, each of half the width and
+/// height, rounded down but not to zero, to one texel.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 pub struct GpuTexture {

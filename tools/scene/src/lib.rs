@@ -56,6 +56,7 @@ mod load;
 mod materials;
 mod meshes;
 mod messages;
+mod mips;
 mod node_lights;
 mod nodes;
 mod numbers;

@@ -318,9 +318,7 @@ impl Reader<'_, '_> {
         if (factor * strength).is_finite() && strength >= 0.0 {
             return factor * strength;
         }
-        self.warn(format!(
-            "emissiveStrength {strength} must be finite and not negative: 0 is used"
-        ));
+        self.warn(format!("emissiveStrength {strength} must be finite and not negative: 0 is used"));
         Vec3::ZERO
     }
 
