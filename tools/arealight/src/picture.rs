@@ -67,8 +67,8 @@ fn luminance(color: Vec3) -> f32 {
 
 impl Picture {
     /// The stops of [`Exposure::Auto`]; 0 where nothing is lit. `emission` is what each sample has of lamps
-    /// that the camera sees: those samples do not count.
-    pub fn auto_stops(&self, emission: &[Vec3]) -> f32 {
+    /// that the camera sees: those samples do not count. `most` is for what nothing lights.
+    pub fn auto_stops(&self, emission: &[Vec3], most: f32) -> f32 {
         let reflected = self.pixels.iter().zip(emission).filter(|(_, emission)| **emission == Vec3::ZERO);
         let luminances = reflected.map(|(radiance, _)| luminance(*radiance));
         let mut lit: Vec<f32> = luminances.filter(|y| *y > 0.0 && y.is_finite()).collect();
@@ -77,7 +77,7 @@ impl Picture {
         }
         let rank = ((lit.len() - 1) as f64 * AUTO_PART) as usize;
         let (_, bright, _) = lit.select_nth_unstable_by(rank, f32::total_cmp);
-        (AUTO_LUMINANCE / *bright).log2().clamp(-MAX_STOPS, MAX_STOPS)
+        (AUTO_LUMINANCE / *bright).log2().clamp(-MAX_STOPS, most)
     }
 
     /// Means over `factor` × `factor` samples of `map` applied to each sample.
@@ -275,7 +275,7 @@ mod tests {
         let greys: Vec<Vec3> = (0..=100).map(|i| Vec3::splat(i as f32 * 0.08)).collect();
         let lamp = [Vec3::splat(8000.0); 100];
         let stops = |pixels: Vec<Vec3>, emission: &[Vec3]| {
-            Picture { width: pixels.len() as u32, height: 1, pixels }.auto_stops(emission)
+            Picture { width: pixels.len() as u32, height: 1, pixels }.auto_stops(emission, MAX_STOPS)
         };
         let both = || [&greys[..], &lamp].concat();
         let emission = [&[Vec3::ZERO; 101][..], &lamp].concat();
@@ -291,6 +291,8 @@ mod tests {
         // Nothing lit, and nearly nothing
         assert_eq!(stops(vec![Vec3::ZERO, Vec3::NAN], &[Vec3::ZERO; 2]), 0.0);
         assert_eq!(stops(vec![Vec3::splat(1e-30)], &[Vec3::ZERO]), MAX_STOPS);
+        let rounding = Picture { width: 1, height: 1, pixels: vec![Vec3::splat(1e-7)] };
+        assert_eq!(rounding.auto_stops(&[Vec3::ZERO], 7.0), 7.0);
     }
 
     #[test]

@@ -27,7 +27,7 @@ pub(crate) fn closed(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f64)
     }
     for (triangle, part) in corners.iter().zip(&parts).filter(|(triangle, _)| has_sides(triangle)) {
         let ways = edges(triangle).map(|edge| passed[&sorted(edge)]);
-        is_closed[*part] &= ways.iter().all(|way| matches!(way, [1, 1] | [1, 0] | [0, 1]));
+        is_closed[*part] &= ways.iter().all(|way| matches!(way, [0, 1] | [1, 0 | 1]));
     }
     let borders = corners.iter().zip(triangles).zip(&parts).filter(|((corners, _), _)| has_sides(corners));
     let borders = borders.flat_map(|((corners, triangle), part)| {

@@ -3,11 +3,11 @@
 use super::Arguments;
 use super::bands::{Band, MOST_SAMPLES};
 use crate::means::Means;
-use crate::picture::{Exposure, Picture};
+use crate::picture::{AUTO_LUMINANCE, Exposure, MAX_STOPS, Picture};
 use crate::progress;
 use crate::shadows::Shadows;
 use arealight::plan::{MediumOptions, Output, ShadeOptions, TileOptions};
-use arealight::{Effects, Quality};
+use arealight::{Effects, Light, Quality, reach};
 use arealight_engine::{Engine, EngineError, Fog, Reference, SceneRenderer, ShadowedView, TileCounts};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::{DVec3, Vec3};
@@ -130,7 +130,7 @@ pub fn render(
         let view = View { surfaces, quality, seed, light_count: scene.lights.len(), shadowed };
         let (mut shading, tiles) = shade(&mut renderer, &view, arguments, &bar)?;
         let mut found = colors(&mut renderer)?;
-        if let Some(rounds) = Rounds::of(arguments, in_band[0]) {
+        if let Some(rounds) = Rounds::of(arguments, in_band[0], most_stops(scene)) {
             let (means, noise, took) = rounds.go_on(&mut renderer, &view, (&lamps, &found), &bar)?;
             shading = shading.zip(took).map(|(one, more)| one + more);
             found = lamps.iter().zip(means.mean()).map(|(lamp, mean)| *lamp + mean.as_vec3()).collect();
@@ -154,10 +154,26 @@ pub fn render(
     }
     bar.finish_and_clear();
     sum.stops = match arguments.exposure {
-        Exposure::Auto => sum.picture.auto_stops(&emission),
+        Exposure::Auto => sum.picture.auto_stops(&emission, most_stops(scene)),
         Exposure::Stops(stops) => stops,
     };
     Ok(sum)
+}
+
+/// The most stops of [`Exposure::Auto`]: ten more than a white sheet in the scene's middle needs that faces
+/// each light. What is darker, as mirrors that see no lamp, is rounding.
+fn most_stops(scene: &Scene) -> f32 {
+    let (middle, least) = (scene.bounds.center(), 0.5 * scene.bounds.diagonal());
+    let sheet = scene.lights.iter().map(|light| {
+        let distance = light.shape.center().distance(middle).max(least);
+        // A light's reach is its size and what grows with the root of one over the threshold
+        let light = Light { texture: None, ..light.clone() };
+        let [near, far] =
+            [1.0, 0.25].map(|threshold| reach::radius(&light, threshold, reach::DIFFUSE_DENSITY));
+        ((far - near) / distance).powi(2)
+    });
+    let stops = (f64::from(AUTO_LUMINANCE) / sheet.sum::<f64>()).log2() + 10.0;
+    if stops.is_nan() { MAX_STOPS } else { (stops as f32).clamp(-MAX_STOPS, MAX_STOPS) }
 }
 
 /// Puts a fog before what a renderer shaded, as the arguments say.
@@ -193,13 +209,15 @@ struct Rounds<'a> {
     most: f64,
     /// Samples in a row.
     width: u32,
+    /// As [`most_stops`] has it.
+    most_stops: f32,
 }
 
 impl<'a> Rounds<'a> {
     /// None where one round is all that is asked for.
-    fn of(arguments: &'a Arguments, width: u32) -> Option<Self> {
+    fn of(arguments: &'a Arguments, width: u32, most_stops: f32) -> Option<Self> {
         let most = arguments.shadow_noise.filter(|_| arguments.shadow_level() != Shadows::Off)?;
-        Some(Self { arguments, most, width })
+        Some(Self { arguments, most, width, most_stops })
     }
 
     /// Goes on from what `seen` shows after the first round, before which there were `lamps` alone: the means
@@ -242,7 +260,7 @@ impl<'a> Rounds<'a> {
             Exposure::Auto => {
                 let pixels: Vec<Vec3> = means.mean().into_iter().map(DVec3::as_vec3).collect();
                 let height = pixels.len() as u32 / self.width.max(1);
-                Picture { width: self.width, height, pixels }.auto_stops(lamps)
+                Picture { width: self.width, height, pixels }.auto_stops(lamps, self.most_stops)
             }
         };
         means.noise(self.width as usize, self.arguments.supersample as usize, stops)
@@ -307,5 +325,34 @@ impl View {
             return renderer.shade(self.surfaces, self.quality);
         }
         renderer.shade_shadowed_passes(&self.shadowed, seed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use arealight::LightShape;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn what_nothing_lights_is_lifted_by_ten_stops_over_a_white_sheet_at_most() {
+        // A disk of radiance 2 and a square metre, ten metres away, and a sun of the same illuminance
+        let disk = |radiance: f32, radius: f64, height: f64| Light {
+            radiance: Vec3::splat(radiance),
+            shape: LightShape::Disk {
+                center: DVec3::Z * height,
+                axis_u: DVec3::X * radius,
+                axis_v: DVec3::NEG_Y * radius,
+            },
+            ..Light::default()
+        };
+        let lit_by = |lights: Vec<Light>| Scene { lights, ..Scene::default() };
+        let side = (1.0 / PI).sqrt();
+        let expected = (AUTO_LUMINANCE / (2.0 / 100.0 / std::f32::consts::PI)).log2() + 10.0;
+        for scene in [lit_by(vec![disk(2.0, side, 10.0)]), lit_by(vec![disk(2e4, side * 10.0, 1e4)])] {
+            assert!((most_stops(&scene) - expected).abs() < 1e-3, "{}", most_stops(&scene));
+        }
+        // The twin: no light, no bound
+        assert_eq!(most_stops(&lit_by(vec![])), MAX_STOPS);
     }
 }
