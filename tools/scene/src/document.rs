@@ -254,8 +254,8 @@ impl Document {
     }
 }
 
-/// The JSON's root. A scene may be without `nodes`, and an extension's channel of an animation without `node`,
-/// which the gltf crate insists on.
+/// The JSON's root. A scene may be without `nodes`, and an animation's channel of an extension without
+/// `node`, which the gltf crate insists on.
 fn parse_root(text: &[u8]) -> serde_json::Result<json::Root> {
     let failure = match serde_json::from_slice(text) {
         Err(error) if error.to_string().contains("missing field `node") => error,

@@ -150,19 +150,26 @@ pub(crate) fn halved(image: &Image, srgb: bool) -> Image {
         let value = if srgb { linear_to_srgb(linear) } else { linear };
         (value * 255.0).round() as u8
     };
-    let [width, height] = [image.width, image.height].map(|side| (side / 2).max(1));
-    let mean = |x: u32, y: u32| {
-        let texels = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| {
-            let (x, y) = ((2 * x + dx).min(image.width - 1), (2 * y + dy).min(image.height - 1));
-            image.texels[y as usize * image.width as usize + x as usize].to_le_bytes()
-        });
+    halved_by(image, |texels| {
+        let texels = texels.map(u32::to_le_bytes);
         let color = |channel: usize| {
             encode(texels.iter().map(|texel| linear[usize::from(texel[channel])]).sum::<f64>() / 4.0)
         };
         let alpha = texels.iter().map(|texel| u32::from(texel[3])).sum::<u32>().div_ceil(4) as u8;
         u32::from_le_bytes([color(0), color(1), color(2), alpha])
+    })
+}
+
+/// The same by any mean of two by two texels.
+pub(crate) fn halved_by(image: &Image, mean: impl Fn([u32; 4]) -> u32) -> Image {
+    let [width, height] = [image.width, image.height].map(|side| (side / 2).max(1));
+    let near = |x: u32, y: u32| {
+        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| {
+            let (x, y) = ((2 * x + dx).min(image.width - 1), (2 * y + dy).min(image.height - 1));
+            image.texels[y as usize * image.width as usize + x as usize]
+        })
     };
-    let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y));
+    let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(near(x, y)));
     Image { name: format!("{}, smaller", image.name), width, height, texels: texels.collect() }
 }
 

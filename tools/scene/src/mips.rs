@@ -1,6 +1,6 @@
 //! The smaller levels of images, each half as wide and high as the one before, down to one texel.
 
-use crate::images::halved;
+use crate::images::{halved, halved_by};
 use crate::scene::Image;
 use glam::DVec3;
 
@@ -26,7 +26,9 @@ pub(crate) fn levels(image: &Image, content: Content) -> Vec<u32> {
     let mut level = own;
     while level.width.max(level.height) > 1 {
         level = match content {
-            Content::Normals => halved_normals(&level),
+            Content::Normals => {
+                halved_by(&level, |near| encode(near.map(decode).into_iter().sum::<DVec3>() * 0.25))
+            }
             _ => halved(&level, content == Content::Colors),
         };
         texels.extend_from_slice(&level.texels);
@@ -62,19 +64,6 @@ fn whole_normals(image: &Image) -> Image {
     Image { texels: image.texels.iter().map(|texel| texel | 0xff00_0000).collect(), ..image.clone() }
 }
 
-fn halved_normals(image: &Image) -> Image {
-    let [width, height] = [image.width, image.height].map(|side| (side / 2).max(1));
-    let mean = |x: u32, y: u32| {
-        let near = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| {
-            let (x, y) = ((2 * x + dx).min(image.width - 1), (2 * y + dy).min(image.height - 1));
-            decode(image.texels[y as usize * image.width as usize + x as usize])
-        });
-        encode(near.into_iter().sum::<DVec3>() * 0.25)
-    };
-    let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y)).collect();
-    Image { name: image.name.clone(), width, height, texels }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -102,7 +91,7 @@ mod tests {
             let mean = decode(levels(&pair, Content::Normals)[2]);
             // Alpha has a step of a 255th, of the root of what is short of 1
             assert!((mean.length() - angle.cos()).abs() < 0.012, "{angle}: {mean}");
-            assert!(mean.normalize().z > 0.9999);
+            assert!(mean.normalize_or_zero().z > 0.9999);
         }
         // The twin: what alpha says in the file is not that
         let pair = image(2, 1, vec![tilted(0.0) & 0x00ff_ffff; 2]);
