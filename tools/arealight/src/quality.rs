@@ -1,7 +1,7 @@
 //! Quality levels, as options of a command.
 
 use crate::failure::Failure;
-use arealight::{Footprint, FormFactor, Horizon, Level, LightTable, Lobes, Quality, SpecularLobes};
+use arealight::{Effects, Footprint, FormFactor, Horizon, Level, LightTable, Lobes, Quality, SpecularLobes};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::PathBuf;
 
@@ -9,7 +9,8 @@ use std::path::PathBuf;
 #[derive(clap::Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Quality")]
 pub struct QualityArguments {
-    /// The quality level; docs/cost.md says which to take [default: exact, as the recorder's and the GLSL's]
+    /// The quality level; docs/cost.md says which to take [default: exact, and of scenes
+    /// with brushed metal, thin films or coats half-vectors]
     #[arg(long, value_name = "LEVEL", value_parser = level_parser())]
     level: Option<Level>,
     /// Within the level: how edges of lights are integrated
@@ -119,7 +120,20 @@ fn level_parser() -> impl TypedValueParser<Value = Level> {
 impl QualityArguments {
     /// The level chosen, or the default, with what was chosen within it.
     pub fn quality(&self) -> Quality {
-        let default = self.level.unwrap_or_default().quality();
+        self.within(self.level.unwrap_or_default())
+    }
+
+    /// The level chosen, or the one to take for surfaces of these effects (docs/cost.md): of brushed metal,
+    /// thin films or coats half vectors.
+    pub fn level_of(&self, surfaces: Effects) -> Level {
+        let bent = Effects::ANISOTROPY | Effects::THIN_FILM | Effects::COAT;
+        let fits = if surfaces.intersects(bent) { Level::HalfVectors } else { Level::default() };
+        self.level.unwrap_or(fits)
+    }
+
+    /// A level with what was chosen within it.
+    pub fn within(&self, level: Level) -> Quality {
+        let default = level.quality();
         let form_factor = match self.form_factor {
             None => default.form_factor,
             Some(Edges::Exact) => FormFactor::Exact,
@@ -202,6 +216,16 @@ mod tests {
         assert_eq!(chosen(&["--level", "finest", "--horizon", "cosine"]), Some(narrower));
         assert_ne!(narrower, Level::Finest.quality());
         assert_eq!(chosen(&["--level", "best"]), None);
+        // Scenes choose where nobody does
+        let of = |words: &[&str], surfaces| {
+            let command = Command::try_parse_from([&["command"], words].concat()).expect("a level");
+            command.quality.level_of(surfaces)
+        };
+        for surfaces in [Effects::ANISOTROPY, Effects::THIN_FILM, Effects::COAT] {
+            assert_eq!(of(&[], surfaces | Effects::GLOSSY), Level::HalfVectors);
+            assert_eq!(of(&["--level", "formula"], surfaces), Level::Formula);
+        }
+        assert_eq!(of(&[], Effects::GLOSSY | Effects::SHEEN), Level::Exact);
     }
 
     #[test]

@@ -57,9 +57,6 @@ impl Scene {
     }
 }
 
-/// The anisotropy of materials from which on fitted lobes lose more than a tenth (docs/materials.md).
-const STRONG: f32 = 0.7;
-
 fn read(mut document: Document, name: String, options: LoadOptions) -> Result<Scene, SceneError> {
     compressed_views::decompress(&mut document)?;
     draco::decompress(&mut document)?;
@@ -76,11 +73,6 @@ fn read(mut document: Document, name: String, options: LoadOptions) -> Result<Sc
     let primitives = primitives::read(document, &nodes, messages)?;
     let of_nodes = nodes.iter().filter_map(|node| node.mesh).flat_map(|mesh| &primitives[mesh]);
     let mut materials = materials::read(document, of_nodes.map(|one| one.material), messages)?;
-    for material in materials.list.iter().filter(|material| material.anisotropy_strength > STRONG) {
-        let text = "strongly anisotropic: fitted lobes reflect .4 to .9 of it, half vectors all \
-                    (--level half-vectors)";
-        messages.note(format!("material '{}'", material.name), text);
-    }
     // Make triangles of every mesh, and lights where it emits
     let (mut triangles, mut emitters) = (Vec::new(), Emitters::default());
     let worlds = LazyCell::new(|| nodes::worlds(&nodes));

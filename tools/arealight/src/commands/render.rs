@@ -10,7 +10,7 @@ use crate::output::{self, say_beside};
 use crate::picture::{Exposure, Picture};
 use crate::quality::QualityArguments;
 use crate::shadows::Shadows;
-use arealight::Effects;
+use arealight::{Effects, Level};
 use arealight_engine::Fog;
 use arealight_scene::{Camera, Scene, SceneFog};
 use serde_json::json;
@@ -263,7 +263,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         .time("light textures", || engine.load_scene_textures(&scene, TEXTURE_SIZE))
         .map_err(|error| gpu::failure(error, &path))?;
     let surfaces = arguments.surfaces.surfaces(&scene, &path);
-    let quality = arguments.quality.quality();
+    let level = arguments.quality.level_of(surfaces);
+    let quality = arguments.quality.within(level);
     let outcome = phases
         .time("picture", || render(&engine, &scene, &camera, samples, (surfaces, quality), arguments))
         .map_err(|error| gpu::failure(error, &path))?;
@@ -273,6 +274,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         arguments,
         scene: &scene,
         surfaces,
+        level,
         camera: &camera,
         device,
         outcome: &outcome,
@@ -307,6 +309,7 @@ struct Summary<'a> {
     arguments: &'a Arguments,
     scene: &'a Scene,
     surfaces: Effects,
+    level: Level,
     camera: &'a Camera,
     device: String,
     outcome: &'a Outcome,
@@ -316,7 +319,7 @@ struct Summary<'a> {
 
 impl Summary<'_> {
     fn to_text(&self) -> String {
-        let Self { arguments, scene, surfaces, camera, device, outcome, phases, output } = self;
+        let Self { arguments, scene, surfaces, level, camera, device, outcome, phases, output } = self;
         let (width, height) = (arguments.size[0], arguments.size[1]);
         let vertices: usize = scene.lights.iter().map(|light| light.shape.vertices().len()).sum();
         let mut lines = vec![format!(
@@ -331,6 +334,9 @@ impl Summary<'_> {
         }
         if arguments.surfaces != SurfaceChoice::Required {
             lines.push(format!("surfaces {surfaces}"));
+        }
+        if arguments.reference.is_none() {
+            lines.push(format!("level    {}", level.name()));
         }
         lines.push(format!("device   {device}"));
         let method = match arguments.reference_samples() {
@@ -369,7 +375,7 @@ impl Summary<'_> {
     }
 
     fn to_json(&self) -> String {
-        let Self { arguments, scene, surfaces, camera, device, outcome, phases, output } = self;
+        let Self { arguments, scene, surfaces, level, camera, device, outcome, phases, output } = self;
         let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
         let required = arealight_scene::required_effects(scene);
         let effects: Vec<_> = required
@@ -383,6 +389,7 @@ impl Summary<'_> {
             "camera": camera.name,
             "effects": effects,
             "surfaces_shaded_with": surfaces.names(),
+            "level": level.name(),
             "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "notes": scene.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "device": device,
