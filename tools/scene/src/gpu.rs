@@ -1,14 +1,13 @@
 //! A scene as the visibility kernel reads it.
 
 use crate::camera::Camera;
-use crate::mips::{self, Content};
+use crate::mips;
 use crate::scene::{Scene, SceneMaterial, Texture, Triangle, Wrap};
 use arealight::gpu::GpuBvhNode;
 use arealight::{BlockerError, Blockers};
 use arealight_oracle::thin_film::ThinFilm;
 use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
 use glam::{DVec3, Vec3};
-use std::collections::BTreeMap;
 
 pub use crate::rays::Hit;
 
@@ -25,7 +24,8 @@ pub struct SceneBuffers {
     pub materials: Vec<GpuMaterial>,
     /// In the order of [`Scene::textures`].
     pub textures: Vec<GpuTexture>,
-    /// The images' texels, one after the other, each followed by its smaller levels'.
+    /// The images' texels, one after the other, each followed by its smaller levels': 128 MiB at most, for
+    /// which the largest images lose their finest levels.
     pub texels: Vec<u32>,
 }
 
@@ -47,24 +47,6 @@ pub enum BufferError {
         /// How many there are.
         count: usize,
     },
-    /// More texels than a 32-bit index reaches.
-    #[error("{count} texels: at most {} fit one buffer", u32::MAX)]
-    TooManyTexels {
-        /// How many there are.
-        count: u64,
-    },
-}
-
-/// What each texture's image is read as.
-fn contents(scene: &Scene) -> Vec<Content> {
-    let content = |texture: &Texture| if texture.srgb { Content::Colors } else { Content::Numbers };
-    let mut contents: Vec<Content> = scene.textures.iter().map(content).collect();
-    for material in &scene.materials {
-        for texture in [material.normal_texture, material.coat_normal_texture].into_iter().flatten() {
-            contents[texture as usize] = Content::Normals;
-        }
-    }
-    contents
 }
 
 impl SceneBuffers {
@@ -79,42 +61,17 @@ impl SceneBuffers {
         let unordered: Vec<GpuTriangle> = scene.triangles.iter().map(|t| pack(t, origin)).collect();
         let vertices = |t: &GpuTriangle| [t.p0, t.p1, t.p2].map(Vec3::from_array);
         let blockers = Blockers::new(&unordered.iter().map(vertices).collect::<Vec<_>>())?;
-        // Append the images to each other, with their levels; one that is read in two ways twice
-        let contents = contents(scene);
-        let sides = |image: u32| [scene.images[image as usize].width, scene.images[image as usize].height];
-        let mut first_texels = BTreeMap::new();
-        let mut count = 0;
-        for (texture, content) in scene.textures.iter().zip(&contents) {
-            first_texels.entry((texture.image, *content)).or_insert_with(|| {
-                let [width, height] = sides(texture.image);
-                let first = count;
-                count += mips::count(width, height);
-                first
-            });
-        }
-        if u32::try_from(count).is_err() {
-            return Err(BufferError::TooManyTexels { count });
-        }
-        let mut texels = vec![0; count as usize];
-        for ((image, content), first) in &first_texels {
-            let levels = mips::levels(&scene.images[*image as usize], *content);
-            texels[*first as usize..][..levels.len()].copy_from_slice(&levels);
-        }
-        let texture = |(texture, content): (&Texture, &Content)| {
-            let image = &scene.images[texture.image as usize];
-            GpuTexture {
-                first_texel: first_texels[&(texture.image, *content)] as u32,
-                width: image.width,
-                height: image.height,
-                flags: texture_flags(*texture),
-            }
+        let (places, texels) = mips::pack(scene, mips::MOST_TEXELS);
+        let texture = |(texture, place): (&Texture, &[u32; 3])| {
+            let [first_texel, width, height] = *place;
+            GpuTexture { first_texel, width, height, flags: texture_flags(*texture) }
         };
         Ok(Self {
             origin,
             triangles: blockers.order.iter().map(|&i| unordered[i as usize]).collect(),
             nodes: blockers.nodes,
             materials: scene.materials.iter().map(GpuMaterial::from).collect(),
-            textures: scene.textures.iter().zip(&contents).map(texture).collect(),
+            textures: scene.textures.iter().zip(&places).map(texture).collect(),
             texels,
         })
     }

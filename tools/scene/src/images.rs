@@ -8,6 +8,7 @@ use gltf::json;
 use gltf::json::texture::WrappingMode;
 use image::{DynamicImage, ImageDecoder as _};
 use std::io::Cursor;
+use std::sync::LazyLock;
 
 /// The widest and highest image that is decoded.
 const MAX_SIDE: u32 = 16384;
@@ -139,6 +140,11 @@ pub(crate) fn linear_mean(image: &Image) -> DVec3 {
     sum / image.texels.len().max(1) as f64
 }
 
+/// The bytes of sRGB that linear light is nearest to, in steps of a 65535th.
+static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    (0..=u16::MAX).map(|step| (linear_to_srgb(f64::from(step) / 65535.0) * 255.0).round() as u8).collect()
+});
+
 /// The image with half the texels a side, rounded down but not to zero; each is the mean of linear light, and
 /// of alpha, over two by two.
 pub(crate) fn halved(image: &Image, srgb: bool) -> Image {
@@ -147,8 +153,8 @@ pub(crate) fn halved(image: &Image, srgb: bool) -> Image {
         if srgb { srgb_to_linear(value) } else { value }
     });
     let encode = |linear: f64| {
-        let value = if srgb { linear_to_srgb(linear) } else { linear };
-        (value * 255.0).round() as u8
+        let byte = |value: f64| (value * 255.0).round() as u8;
+        if srgb { ENCODED[(linear * 65535.0).round() as usize] } else { byte(linear) }
     };
     halved_by(image, |texels| {
         let texels = texels.map(u32::to_le_bytes);

@@ -7,8 +7,8 @@ use crate::error::SceneError;
 use crate::messages::Messages;
 use crate::scene::{NO_LIGHTS, Scene, SceneLamp};
 use crate::{
-    animations, area_lights, compressed_views, draco, extensions, light_textures, materials, meshes, nodes,
-    primitives, punctual, skins,
+    animations, area_lights, compressed_views, draco, extensions, light_textures, materials, meshes, mips,
+    nodes, primitives, punctual, skins,
 };
 use std::cell::LazyCell;
 use std::path::Path;
@@ -73,6 +73,11 @@ fn read(mut document: Document, name: String, options: LoadOptions) -> Result<Sc
     let primitives = primitives::read(document, &nodes, messages)?;
     let of_nodes = nodes.iter().filter_map(|node| node.mesh).flat_map(|mesh| &primitives[mesh]);
     let mut materials = materials::read(document, of_nodes.map(|one| one.material), messages)?;
+    let smaller = mips::smaller(&materials.textures.textures, &materials.list, &materials.textures.images);
+    if smaller > 0 {
+        let text = format!("{smaller} images are shown at half their size or less: all take 128 MiB at most");
+        messages.note("textures", text);
+    }
     // Make triangles of every mesh, and lights where it emits
     let (mut triangles, mut emitters) = (Vec::new(), Emitters::default());
     let worlds = LazyCell::new(|| nodes::worlds(&nodes));

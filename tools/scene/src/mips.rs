@@ -1,8 +1,12 @@
 //! The smaller levels of images, each half as wide and high as the one before, down to one texel.
 
 use crate::images::{halved, halved_by};
-use crate::scene::Image;
+use crate::scene::{Image, Scene, SceneMaterial, Texture};
 use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// The most texels of a scene: 128 MiB, what every device binds to a shader.
+pub(crate) const MOST_TEXELS: u64 = 1 << 25;
 
 /// What an image's channels are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -15,9 +19,68 @@ pub(crate) enum Content {
     Normals,
 }
 
+/// An image as it is read, and the size of its finest level.
+type Sizes = BTreeMap<(u32, Content), [u32; 2]>;
+
+/// What each of some textures' images is read as.
+fn contents(textures: &[Texture], materials: &[SceneMaterial]) -> Vec<Content> {
+    let content = |texture: &Texture| if texture.srgb { Content::Colors } else { Content::Numbers };
+    let mut contents: Vec<Content> = textures.iter().map(content).collect();
+    for material in materials {
+        for texture in [material.normal_texture, material.coat_normal_texture].into_iter().flatten() {
+            contents[texture as usize] = Content::Normals;
+        }
+    }
+    contents
+}
+
+/// The images' sizes where all levels have `most` texels at most: the largest lose their finest ones.
+fn sizes(textures: &[Texture], contents: &[Content], images: &[Image], most: u64) -> Sizes {
+    let of_image = |image: &Image| [image.width, image.height];
+    let read = textures.iter().zip(contents).map(|(texture, content)| (texture.image, *content));
+    let mut sizes: Sizes = read.map(|key| (key, of_image(&images[key.0 as usize]))).collect();
+    let mut total: u64 = sizes.values().map(|size| count(*size)).sum();
+    while total > most {
+        let area = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height);
+        let Some(largest) = sizes.values_mut().max_by_key(|size| area(**size)) else { break };
+        total -= area(*largest);
+        *largest = largest.map(|side| (side / 2).max(1));
+    }
+    sizes
+}
+
+/// How many images are smaller than the file's, for all to be of [`MOST_TEXELS`].
+pub(crate) fn smaller(textures: &[Texture], materials: &[SceneMaterial], images: &[Image]) -> usize {
+    let sizes = sizes(textures, &contents(textures, materials), images, MOST_TEXELS);
+    let is_smaller = |(image, size): (u32, [u32; 2])| {
+        let whole = &images[image as usize];
+        size != [whole.width, whole.height]
+    };
+    sizes.into_iter().filter(|((image, _), size)| is_smaller((*image, *size))).count()
+}
+
+/// The first texel, width and height of each of a scene's textures, and the texels, which are `most` at most.
+/// The levels of an image follow one another; one that is read in two ways is there twice.
+pub(crate) fn pack(scene: &Scene, most: u64) -> (Vec<[u32; 3]>, Vec<u32>) {
+    let contents = contents(&scene.textures, &scene.materials);
+    let sizes = sizes(&scene.textures, &contents, &scene.images, most);
+    let mut texels = vec![];
+    let mut firsts = BTreeMap::new();
+    for ((image, content), size) in &sizes {
+        firsts.insert((*image, *content), texels.len() as u32);
+        let levels = levels(&scene.images[*image as usize], *content);
+        texels.extend_from_slice(&levels[levels.len() - count(*size) as usize..]);
+    }
+    let place = |(texture, content): (&Texture, &Content)| {
+        let [width, height] = sizes[&(texture.image, *content)];
+        [firsts[&(texture.image, *content)], width, height]
+    };
+    (scene.textures.iter().zip(&contents).map(place).collect(), texels)
+}
+
 /// The texels of all levels, the image's own first. Of normals each texel has the mean's direction, and in
 /// alpha how long that is (`mean_length` in scene.glsl), which a mean of normals that point apart is not.
-pub(crate) fn levels(image: &Image, content: Content) -> Vec<u32> {
+fn levels(image: &Image, content: Content) -> Vec<u32> {
     let own = match content {
         Content::Normals => whole_normals(image),
         _ => image.clone(),
@@ -37,8 +100,8 @@ pub(crate) fn levels(image: &Image, content: Content) -> Vec<u32> {
 }
 
 /// How many texels the levels of an image of a size have.
-pub(crate) fn count(width: u32, height: u32) -> u64 {
-    let [mut width, mut height] = [width, height].map(u64::from);
+fn count(size: [u32; 2]) -> u64 {
+    let [mut width, mut height] = size.map(u64::from);
     let mut count = width * height;
     while width.max(height) > 1 {
         (width, height) = ((width / 2).max(1), (height / 2).max(1));
@@ -67,6 +130,7 @@ fn whole_normals(image: &Image) -> Image {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Wrap;
 
     fn image(width: u32, height: u32, texels: Vec<u32>) -> Image {
         Image { name: "image".into(), width, height, texels }
@@ -78,9 +142,30 @@ mod tests {
             let image = image(width, height, vec![0xff80_8080; (width * height) as usize]);
             for content in [Content::Numbers, Content::Colors, Content::Normals] {
                 let texels = levels(&image, content);
-                assert_eq!((texels.len() as u64, count(width, height)), (expected, expected), "{content:?}");
+                assert_eq!(
+                    (texels.len() as u64, count([width, height])),
+                    (expected, expected),
+                    "{content:?}"
+                );
             }
         }
+    }
+
+    #[test]
+    fn the_largest_images_lose_their_finest_levels() {
+        let texture = |image: u32| Texture { image, srgb: false, wrap_u: Wrap::Repeat, wrap_v: Wrap::Repeat };
+        let scene = Scene {
+            images: vec![image(8, 8, vec![1; 64]), image(4, 4, vec![2; 16])],
+            textures: vec![texture(0), texture(1), texture(0)],
+            ..Scene::default()
+        };
+        // 64 + 16 + 4 + 1, and 16 + 4 + 1
+        let (whole, texels) = pack(&scene, 106);
+        assert_eq!((&whole[..], texels.len()), (&[[0, 8, 8], [85, 4, 4], [0, 8, 8]][..], 106));
+        let (reduced, texels) = pack(&scene, 105);
+        assert_eq!((&reduced[..], texels.len()), (&[[0, 4, 4], [21, 4, 4], [0, 4, 4]][..], 42));
+        assert!(texels[..21].iter().all(|texel| *texel == 1) && texels[21..].iter().all(|texel| *texel == 2));
+        assert_eq!(smaller(&scene.textures, &[], &scene.images), 0);
     }
 
     #[test]
