@@ -170,6 +170,12 @@ impl QualityArguments {
     }
 }
 
+/// The level that is a quality.
+pub fn name_of(quality: Quality) -> &'static str {
+    let level = Level::ALL.into_iter().find(|level| level.quality() == quality);
+    level.map_or("of these options", Level::name)
+}
+
 /// What a level chooses, by the names of its options.
 pub fn said(quality: Quality) -> serde_json::Value {
     let Quality { form_factor, horizon, specular_lobes, lobes, footprint } = quality;

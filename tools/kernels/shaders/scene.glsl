@@ -382,10 +382,8 @@ ScenePoint scene_point(BvhHit hit, vec3 steps[2]) {
     point.coat.roughness = material.coat_roughness * texel[COAT_ROUGHNESS_TEXEL].g;
     point.sheen.color = material.sheen_color * texel[SHEEN_COLOR_TEXEL].rgb;
     point.sheen.roughness = material.sheen_roughness * texel[SHEEN_ROUGHNESS_TEXEL].a;
-
     point.coat.normal = side * bend_normal(axes, material.coat_normal_texture, texel[COAT_NORMAL_TEXEL],
                                            material.coat_normal_scale, normal, point.coat.roughness);
-
     point.base_color = material.base_color * texel[BASE_COLOR_TEXEL].rgb
                      * vertex_color(triangle, hit.barycentric).rgb;
     point.metalness = material.metalness * texel[METALLIC_ROUGHNESS_TEXEL].b;
@@ -397,17 +395,14 @@ ScenePoint scene_point(BvhHit hit, vec3 steps[2]) {
     // reflectance
     float specular_weight = texel[SPECULAR_TEXEL].a;
     point.dielectric_f90 = material.dielectric_f90 * specular_weight;
-    point.dielectric_f0 = min(material.dielectric_f0 * specular_weight
-                              * texel[SPECULAR_COLOR_TEXEL].rgb,
+    point.dielectric_f0 = min(material.dielectric_f0 * specular_weight * texel[SPECULAR_COLOR_TEXEL].rgb,
                               vec3(point.dielectric_f90));
     point.film.weight = material.film_weight * texel[FILM_TEXEL].r;
     point.film.ior = material.film_ior;
     point.film.thickness = mix(material.film_least_thickness, material.film_thickness,
                                texel[FILM_THICKNESS_TEXEL].g);
-    float transmission = material.transmission * texel[TRANSMISSION_TEXEL].a
-        * (1.0 - point.metalness);
-    point.transmitted = transmission * material.transmission_color
-        * texel[TRANSMISSION_COLOR_TEXEL].rgb;
+    float transmission = material.transmission * texel[TRANSMISSION_TEXEL].a * (1.0 - point.metalness);
+    point.transmitted = transmission * material.transmission_color * texel[TRANSMISSION_COLOR_TEXEL].rgb;
     // KHR_materials_transmission takes the place of what is diffused, on either side
     float glass = material.glass * texel[GLASS_TEXEL].r * (1.0 - point.metalness);
     vec3 pane = glass * point.base_color;

@@ -48,8 +48,8 @@ float below_sheen(ScenePoint point, vec3 view) {
     return arealight_sheen_layer(arealight_surface_frame(point.normal, view), point.sheen).base;
 }
 
-// How the place that is seen in a hit's plane changes from pixel to pixel, to the right and downwards; `line`
-// is the line of sight, of which the camera's axes are steps.
+// The derivatives, by pixels to the right and downwards, of where the view ray meets the hit's plane; `line`
+// is the ray's direction, as long as the camera's `forward` plus the pixel's offset.
 vec3[2] pixel_steps(BvhHit hit, vec3 line, vec2 size, bool parallel) {
     ArealightGpuTriangle triangle = triangles[hit.triangle];
     vec3 normal = cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0);

@@ -24,19 +24,17 @@ struct Keys {
 /// and after their last one nothing moves. Where several animations move the same, the first does.
 pub(crate) fn apply(document: &mut Document, time: f64, messages: &mut Messages) -> Result<(), SceneError> {
     let (mut moved, mut others) = (HashSet::new(), 0);
-    for index in 0..document.root.animations.len() {
-        let animation = document.root.animations[index].clone();
-        let mut own = vec![];
+    let animations = std::mem::take(&mut document.root.animations);
+    for (index, animation) in animations.iter().enumerate() {
         for (number, channel) in animation.channels.iter().enumerate() {
             let node = channel.target.node.value();
             let Valid(path) = channel.target.path else { continue };
-            if moved.contains(&(node, path as u8)) {
+            if !moved.insert((node, path as u8)) {
                 others += 1;
                 continue;
             }
-            own.push((node, path as u8));
             let field = format!("animations[{index}].channels[{number}]");
-            let keys = Keys::read(document, &animation, channel, (path, node), &field)?;
+            let keys = Keys::read(document, animation, channel, (path, node), &field)?;
             // An animation of nothing moves nothing
             let Some(value) = keys.at(time, path == Property::Rotation) else { continue };
             let (place, numbers) = (&mut document.places[node], |i: usize| value[i]);
@@ -50,7 +48,6 @@ pub(crate) fn apply(document: &mut Document, time: f64, messages: &mut Messages)
                 Property::MorphTargetWeights => place.weights = Some(value),
             }
         }
-        moved.extend(own);
     }
     if others > 0 {
         let text = format!("{others} channels move what an earlier animation moves: left out");

@@ -266,8 +266,7 @@ fn parse_root(text: &[u8]) -> serde_json::Result<json::Root> {
         scene.entry("nodes").or_insert_with(|| serde_json::json!([]));
     }
     for animation in objects(&mut root, "animations") {
-        let channels = animation.get_mut("channels").and_then(serde_json::Value::as_array_mut);
-        if let Some(channels) = channels {
+        if let Some(channels) = animation.get_mut("channels").and_then(serde_json::Value::as_array_mut) {
             channels.retain(|channel| channel["target"].get("node").is_some());
         }
     }

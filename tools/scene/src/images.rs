@@ -13,7 +13,7 @@ use std::sync::LazyLock;
 /// The widest and highest image that is decoded.
 const MAX_SIDE: u32 = 16384;
 
-/// The most texels a scene's images may have in all: one gibibyte on the GPU.
+/// The most texels a scene's images may have in all: one gibibyte.
 const MAX_TEXELS: u64 = 1 << 28;
 
 /// A scene's textures, and the images that they are of.
@@ -132,12 +132,20 @@ fn decode(document: &Document, index: usize, others: u64) -> Result<Image, Scene
 
 /// The mean of an sRGB image's linear colours.
 pub(crate) fn linear_mean(image: &Image) -> DVec3 {
-    let linear: Vec<f64> = (0..=255_u8).map(|byte| srgb_to_linear(f64::from(byte) / 255.0)).collect();
+    let linear = decoded(true);
     let sum = image.texels.iter().fold(DVec3::ZERO, |sum, texel| {
         let [r, g, b, _] = texel.to_le_bytes().map(|byte| linear[usize::from(byte)]);
         sum + DVec3::new(r, g, b)
     });
     sum / image.texels.len().max(1) as f64
+}
+
+/// What each byte of a channel is.
+fn decoded(srgb: bool) -> [f64; 256] {
+    std::array::from_fn(|byte| {
+        let value = byte as f64 / 255.0;
+        if srgb { srgb_to_linear(value) } else { value }
+    })
 }
 
 /// The bytes of sRGB that linear light is nearest to, in steps of a 65535th.
@@ -148,10 +156,7 @@ static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
 /// The image with half the texels a side, rounded down but not to zero; each is the mean of linear light, and
 /// of alpha, over two by two.
 pub(crate) fn halved(image: &Image, srgb: bool) -> Image {
-    let linear: [f64; 256] = std::array::from_fn(|byte| {
-        let value = byte as f64 / 255.0;
-        if srgb { srgb_to_linear(value) } else { value }
-    });
+    let linear = decoded(srgb);
     let encode = |linear: f64| {
         let byte = |value: f64| (value * 255.0).round() as u8;
         if srgb { ENCODED[(linear * 65535.0).round() as usize] } else { byte(linear) }

@@ -8,9 +8,9 @@ use crate::gpu;
 use crate::lights::{LightArguments, scene_name};
 use crate::output::{self, say_beside};
 use crate::picture::{Exposure, Picture};
-use crate::quality::QualityArguments;
+use crate::quality::{QualityArguments, name_of};
 use crate::shadows::Shadows;
-use arealight::{Effects, Level};
+use arealight::Effects;
 use arealight_engine::Fog;
 use arealight_scene::{Camera, Scene, SceneFog};
 use serde_json::json;
@@ -263,8 +263,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         .time("light textures", || engine.load_scene_textures(&scene, TEXTURE_SIZE))
         .map_err(|error| gpu::failure(error, &path))?;
     let surfaces = arguments.surfaces.surfaces(&scene, &path);
-    let level = arguments.quality.level_of(surfaces);
-    let quality = arguments.quality.within(level);
+    let quality = arguments.quality.within(arguments.quality.level_of(surfaces));
     let outcome = phases
         .time("picture", || render(&engine, &scene, &camera, samples, (surfaces, quality), arguments))
         .map_err(|error| gpu::failure(error, &path))?;
@@ -274,7 +273,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         arguments,
         scene: &scene,
         surfaces,
-        level,
+        level: name_of(quality),
         camera: &camera,
         device,
         outcome: &outcome,
@@ -309,7 +308,7 @@ struct Summary<'a> {
     arguments: &'a Arguments,
     scene: &'a Scene,
     surfaces: Effects,
-    level: Level,
+    level: &'static str,
     camera: &'a Camera,
     device: String,
     outcome: &'a Outcome,
@@ -336,7 +335,7 @@ impl Summary<'_> {
             lines.push(format!("surfaces {surfaces}"));
         }
         if arguments.reference.is_none() {
-            lines.push(format!("level    {}", level.name()));
+            lines.push(format!("level    {level}"));
         }
         lines.push(format!("device   {device}"));
         let method = match arguments.reference_samples() {
@@ -389,7 +388,7 @@ impl Summary<'_> {
             "camera": camera.name,
             "effects": effects,
             "surfaces_shaded_with": surfaces.names(),
-            "level": level.name(),
+            "level": level,
             "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "notes": scene.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "device": device,

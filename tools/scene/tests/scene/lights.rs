@@ -2,7 +2,7 @@
 
 use crate::shapes::{floor, panel, polygon, rounded_box, sphere, star};
 use crate::writer::Shape;
-use crate::{emitter_with, load, warnings};
+use crate::{emitter_with, load, panel_with, warnings};
 use arealight::{Effects, Light, LightShape};
 use arealight_scene::{LUMENS_PER_WATT, Scene, required_effects};
 use glam::{DVec3, Vec3};
@@ -248,4 +248,12 @@ fn area_lights_that_cannot_be_are_left_out() {
         assert!(scene.lights.is_empty());
         assert!(warnings(&scene)[0].ends_with(text), "{:?} should end with {text:?}", warnings(&scene));
     }
+}
+
+#[test]
+fn an_emissive_factor_above_one_is_a_strength() {
+    let scene = load(panel_with(json!({ "emissiveFactor": [6, 3, 0] })));
+    assert_eq!(scene.lights[0].radiance.to_array(), [6.0, 3.0, 0.0]);
+    let notes: Vec<String> = scene.notes.iter().map(ToString::to_string).collect();
+    assert_eq!(notes, ["material '#0': emissiveFactor [6.0, 3.0, 0.0] is above 1: a strength, too"]);
 }

@@ -138,14 +138,6 @@ fn what_is_out_of_range_or_unknown_is_said() {
 }
 
 #[test]
-fn an_emissive_factor_above_one_is_a_strength() {
-    let scene = load(panel_with(json!({ "emissiveFactor": [6, 3, 0] })));
-    assert_eq!(scene.lights[0].radiance.to_array(), [6.0, 3.0, 0.0]);
-    let notes: Vec<String> = scene.notes.iter().map(ToString::to_string).collect();
-    assert_eq!(notes, ["material '#0': emissiveFactor [6.0, 3.0, 0.0] is above 1: a strength, too"]);
-}
-
-#[test]
 fn what_is_wrong_with_extensions_is_named() {
     let missing = json!({ "index": 7 });
     for (extension, values, text) in [

@@ -110,6 +110,7 @@ pub fn render(
     let mut sum = Outcome::begin(size);
     let mut emission = vec![];
     let fog = arguments.fog.of(scene, camera);
+    let most_stops = most_stops(scene);
     for (index, band) in bands.iter().enumerate() {
         let in_band = band.size(size[0]);
         let camera = band.camera(whole, size[1]);
@@ -130,7 +131,7 @@ pub fn render(
         let view = View { surfaces, quality, seed, light_count: scene.lights.len(), shadowed };
         let (mut shading, tiles) = shade(&mut renderer, &view, arguments, &bar)?;
         let mut found = colors(&mut renderer)?;
-        if let Some(rounds) = Rounds::of(arguments, in_band[0], most_stops(scene)) {
+        if let Some(rounds) = Rounds::of(arguments, in_band[0], most_stops) {
             let (means, noise, took) = rounds.go_on(&mut renderer, &view, (&lamps, &found), &bar)?;
             shading = shading.zip(took).map(|(one, more)| one + more);
             found = lamps.iter().zip(means.mean()).map(|(lamp, mean)| *lamp + mean.as_vec3()).collect();
@@ -154,7 +155,7 @@ pub fn render(
     }
     bar.finish_and_clear();
     sum.stops = match arguments.exposure {
-        Exposure::Auto => sum.picture.auto_stops(&emission, most_stops(scene)),
+        Exposure::Auto => sum.picture.auto_stops(&emission, most_stops),
         Exposure::Stops(stops) => stops,
     };
     Ok(sum)
