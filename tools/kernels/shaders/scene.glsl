@@ -194,11 +194,8 @@ ArealightGpuTexture texture_level(ArealightGpuTexture image, int level) {
 }
 
 // The mean over a footprint: as many places along its longer side as the shorter one goes into it, each
-// between the two levels whose texels are about as wide. White where there is no texture.
+// between the two levels whose texels are about as wide.
 vec4 sample_footprint(uint index, TextureFootprint footprint) {
-    if (index == NO_TEXTURE) {
-        return vec4(1.0);
-    }
     ArealightGpuTexture image = textures[index];
     vec2 size = vec2(image.width, image.height);
     float along = length(footprint.along * size);
@@ -240,7 +237,8 @@ const int TRANSMISSION_COLOR_TEXEL = 15;
 const int GLASS_TEXEL = 16;
 const int TEXELS = 17;
 
-// What a pixel sees of each; of all in one place, which drivers compile once.
+// What a pixel sees of each; of all in one place, which drivers compile once and a group of pixels without
+// textures never comes to.
 vec4[TEXELS] material_texels(ArealightGpuMaterial material, TextureFootprint seen) {
     uint indices[TEXELS] = uint[TEXELS](
         material.base_color_texture, material.metallic_roughness_texture, material.normal_texture,
@@ -250,7 +248,13 @@ vec4[TEXELS] material_texels(ArealightGpuMaterial material, TextureFootprint see
         material.film_texture, material.film_thickness_texture, material.transmission_texture,
         material.transmission_color_texture, material.glass_texture);
     vec4 texels_seen[TEXELS];
+    uint left = 0u;
     for (int i = 0; i < TEXELS; i++) {
+        texels_seen[i] = vec4(1.0);
+        left |= indices[i] == NO_TEXTURE ? 0u : 1u << i;
+    }
+    for (; left != 0u; left &= left - 1u) {
+        int i = findLSB(left);
         texels_seen[i] = sample_footprint(indices[i], seen);
     }
     return texels_seen;
