@@ -1,10 +1,11 @@
 //! The host's device, and the pipeline cache it lends.
 
 use crate::debug_names::DebugNames;
-use crate::error::Error;
+use crate::error::{Error, VulkanCall};
 use crate::limits::{DescriptorLimits, ImageLimits, light_texture_limits};
 use crate::written_sets::WrittenSets;
 use ash::vk;
+use std::ops::Range;
 
 /// The recorder's view of the host's device, from which passes are made. Cheap to clone.
 #[derive(Clone)]
@@ -112,6 +113,23 @@ impl Context {
         &self.device
     }
 
+    /// A view of an image.
+    ///
+    /// # Safety
+    /// The image is of this device, and has memory.
+    pub(crate) unsafe fn view(
+        &self,
+        image: vk::Image,
+        kind: vk::ImageViewType,
+        format: vk::Format,
+        range: vk::ImageSubresourceRange,
+    ) -> Result<vk::ImageView, Error> {
+        let info = vk::ImageViewCreateInfo::default().image(image).view_type(kind).format(format);
+        let info = info.subresource_range(range);
+        // SAFETY: the same contract; the device is valid by that of Context::new.
+        unsafe { self.device.create_image_view(&info, None) }.call("vkCreateImageView")
+    }
+
     /// A barrier for what a pass's own commands hand on to each other: stages, and what they do.
     ///
     /// # Safety
@@ -126,5 +144,31 @@ impl Context {
         let flags = vk::DependencyFlags::empty();
         // SAFETY: the same contract.
         unsafe { self.device.cmd_pipeline_barrier(command_buffer, before, after, flags, &barrier, &[], &[]) };
+    }
+
+    /// Barriers of images between two stages.
+    ///
+    /// # Safety
+    /// As above; the images are live.
+    pub(crate) unsafe fn record_images(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        (before, after): (vk::PipelineStageFlags, vk::PipelineStageFlags),
+        images: &[vk::ImageMemoryBarrier<'_>],
+    ) {
+        let flags = vk::DependencyFlags::empty();
+        // SAFETY: the same contract.
+        unsafe { self.device.cmd_pipeline_barrier(command_buffer, before, after, flags, &[], &[], images) };
+    }
+}
+
+/// Levels of an image of colours, and its layers from the first on.
+pub(crate) const fn color_range(levels: Range<u32>, layer_count: u32) -> vk::ImageSubresourceRange {
+    vk::ImageSubresourceRange {
+        aspect_mask: vk::ImageAspectFlags::COLOR,
+        base_mip_level: levels.start,
+        level_count: levels.end - levels.start,
+        base_array_layer: 0,
+        layer_count,
     }
 }

@@ -1,6 +1,6 @@
 //! The lights' textures on the GPU: an array image with a layer for each, and the passes that filter them.
 
-use crate::context::Context;
+use crate::context::{Context, color_range};
 use crate::error::{Error, VulkanCall};
 use crate::limits::{TEXTURE_FORMAT as FORMAT, TEXTURE_USAGE as USAGE};
 use crate::pass::ComputePass;
@@ -175,23 +175,13 @@ impl LightTextures {
 
     /// A view of some levels of every layer, for sampling and storing alike.
     fn make_view(&self, levels: Range<u32>) -> Result<vk::ImageView, Error> {
-        let info = vk::ImageViewCreateInfo::default()
-            .image(self.image)
-            .view_type(vk::ImageViewType::TYPE_2D_ARRAY)
-            .format(FORMAT)
-            .subresource_range(self.range(levels));
+        let kind = vk::ImageViewType::TYPE_2D_ARRAY;
         // SAFETY: the image is ours and has memory.
-        unsafe { self.context.device.create_image_view(&info, None) }.call("vkCreateImageView")
+        unsafe { self.context.view(self.image, kind, FORMAT, self.range(levels)) }
     }
 
     fn range(&self, levels: Range<u32>) -> vk::ImageSubresourceRange {
-        vk::ImageSubresourceRange {
-            aspect_mask: vk::ImageAspectFlags::COLOR,
-            base_mip_level: levels.start,
-            level_count: levels.end - levels.start,
-            base_array_layer: 0,
-            layer_count: LAYERS * self.layers,
-        }
+        color_range(levels, LAYERS * self.layers)
     }
 
     /// The size of every layer.
@@ -315,19 +305,16 @@ impl LightTextures {
         let black = vk::ClearColorValue { float32: [0.0, 0.0, 0.0, 1.0] };
         // SAFETY: the caller vouches for the command buffer; the image is ours and has memory.
         unsafe {
-            device.cmd_pipeline_barrier(
+            // After whatever used an earlier content
+            self.context.record_images(
                 command_buffer,
-                // After whatever used an earlier content
-                vk::PipelineStageFlags::ALL_COMMANDS,
-                vk::PipelineStageFlags::TRANSFER,
-                vk::DependencyFlags::empty(),
-                &[],
-                &[],
+                (vk::PipelineStageFlags::ALL_COMMANDS, vk::PipelineStageFlags::TRANSFER),
                 &[first_use],
             );
             device.cmd_clear_color_image(command_buffer, self.image, LAYOUT, &black, &[all]);
             let cleared = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
-            self.barrier(command_buffer, cleared, (vk::PipelineStageFlags::ALL_COMMANDS, READ | WRITE));
+            let used = (vk::PipelineStageFlags::ALL_COMMANDS, READ | WRITE);
+            self.context.record_barrier(command_buffer, cleared, used);
         }
     }
 
@@ -368,7 +355,7 @@ impl LightTextures {
         // SAFETY: the caller vouches for the command buffer and the sets, here and below.
         let _label = unsafe { self.context.names.label(command_buffer, c"arealight light textures") };
         // SAFETY: as above.
-        let barrier = |before, after| unsafe { self.barrier(command_buffer, before, after) };
+        let barrier = |before, after| unsafe { self.context.record_barrier(command_buffer, before, after) };
         let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
         let everything = vk::PipelineStageFlags::ALL_COMMANDS;
 
@@ -408,30 +395,6 @@ impl LightTextures {
         }
         barrier((compute, WRITE), (everything, READ));
         Ok(())
-    }
-
-    /// # Safety
-    /// The command buffer is recording, outside a render pass.
-    unsafe fn barrier(
-        &self,
-        command_buffer: vk::CommandBuffer,
-        before: (vk::PipelineStageFlags, vk::AccessFlags),
-        after: (vk::PipelineStageFlags, vk::AccessFlags),
-    ) {
-        let barrier = vk::MemoryBarrier::default().src_access_mask(before.1).dst_access_mask(after.1);
-        let flags = vk::DependencyFlags::empty();
-        // SAFETY: the same contract.
-        unsafe {
-            self.context.device.cmd_pipeline_barrier(
-                command_buffer,
-                before.0,
-                after.0,
-                flags,
-                &[barrier],
-                &[],
-                &[],
-            );
-        }
     }
 
     fn check_level_sets(&self, sets: &[vk::DescriptorSet]) -> Result<(), Error> {

@@ -1,6 +1,6 @@
 //! Memory through the gpu-allocator crate.
 
-use crate::context::Context;
+use crate::context::{Context, color_range};
 use crate::error::{Error, VulkanCall};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
@@ -135,15 +135,6 @@ pub(crate) struct Image {
     memory: Option<Memory>,
 }
 
-/// All of an image of one level and layer of colour.
-pub(crate) const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
-    aspect_mask: vk::ImageAspectFlags::COLOR,
-    base_mip_level: 0,
-    level_count: 1,
-    base_array_layer: 0,
-    layer_count: 1,
-};
-
 impl Image {
     /// # Safety
     /// As [`Buffer::new`].
@@ -177,13 +168,9 @@ impl Image {
                 unsafe { device.bind_image_memory(raw, memory, offset) }.call("vkBindImageMemory")
             })?;
         image.memory = Some(allocator.keep(allocation));
-        let info = vk::ImageViewCreateInfo::default()
-            .image(raw)
-            .view_type(vk::ImageViewType::from_raw(image_type.as_raw())) // of one layer
-            .format(format)
-            .subresource_range(WHOLE);
+        let kind = vk::ImageViewType::from_raw(image_type.as_raw()); // of one layer
         // SAFETY: as above.
-        image.view = unsafe { device.create_image_view(&info, None) }.call("vkCreateImageView")?;
+        image.view = unsafe { context.view(raw, kind, format, color_range(0..1, 1)) }?;
         Ok(image)
     }
 }

@@ -1,6 +1,6 @@
 //! The light table on the GPU: an array image of [`arealight::table::LAYERS`] layers.
 
-use crate::context::Context;
+use crate::context::{Context, color_range};
 use crate::error::{Error, VulkanCall};
 use crate::resource::Resource;
 use arealight::LightTable;
@@ -111,13 +111,10 @@ impl TableImage {
         let device = &self.context.device;
         // SAFETY: the caller vouches for memory and offset.
         unsafe { device.bind_image_memory(self.image, memory, offset) }.call("vkBindImageMemory")?;
-        let info = vk::ImageViewCreateInfo::default()
-            .image(self.image)
-            .view_type(vk::ImageViewType::TYPE_2D_ARRAY)
-            .format(self.format.vulkan())
-            .subresource_range(all_layers());
+        let kind = vk::ImageViewType::TYPE_2D_ARRAY;
+        let range = color_range(0..1, LAYERS);
         // SAFETY: the image has memory now.
-        self.view = unsafe { device.create_image_view(&info, None) }.call("vkCreateImageView")?;
+        self.view = unsafe { self.context.view(self.image, kind, self.format.vulkan(), range) }?;
         self.context.names.name(self.view, "table");
         Ok(())
     }
@@ -161,7 +158,7 @@ impl TableImage {
         let device = &self.context.device;
         let barrier = vk::ImageMemoryBarrier::default()
             .image(self.image)
-            .subresource_range(all_layers())
+            .subresource_range(color_range(0..1, LAYERS))
             .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
             .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED);
         let before = barrier
@@ -187,14 +184,10 @@ impl TableImage {
         // SAFETY: the caller vouches for the command buffer and the staging buffer; the image is ours.
         unsafe {
             let _label = self.context.names.label(command_buffer, c"arealight table upload");
-            device.cmd_pipeline_barrier(
+            // After whatever read an earlier table
+            self.context.record_images(
                 command_buffer,
-                // After whatever read an earlier table
-                vk::PipelineStageFlags::ALL_COMMANDS,
-                vk::PipelineStageFlags::TRANSFER,
-                vk::DependencyFlags::empty(),
-                &[],
-                &[],
+                (vk::PipelineStageFlags::ALL_COMMANDS, vk::PipelineStageFlags::TRANSFER),
                 &[before],
             );
             device.cmd_copy_buffer_to_image(
@@ -204,15 +197,7 @@ impl TableImage {
                 vk::ImageLayout::TRANSFER_DST_OPTIMAL,
                 &[copy],
             );
-            device.cmd_pipeline_barrier(
-                command_buffer,
-                vk::PipelineStageFlags::TRANSFER,
-                readers,
-                vk::DependencyFlags::empty(),
-                &[],
-                &[],
-                &[after],
-            );
+            self.context.record_images(command_buffer, (vk::PipelineStageFlags::TRANSFER, readers), &[after]);
         }
     }
 
@@ -237,15 +222,5 @@ impl Drop for TableImage {
             self.context.device.destroy_image_view(self.view, None);
             self.context.device.destroy_image(self.image, None);
         }
-    }
-}
-
-fn all_layers() -> vk::ImageSubresourceRange {
-    vk::ImageSubresourceRange {
-        aspect_mask: vk::ImageAspectFlags::COLOR,
-        base_mip_level: 0,
-        level_count: 1,
-        base_array_layer: 0,
-        layer_count: LAYERS,
     }
 }

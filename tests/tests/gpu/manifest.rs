@@ -68,7 +68,8 @@ fn sizes_and_constants_are_those_of_the_shaders() {
     assert_eq!(size(&tool::kernels::REFERENCE), size_of::<tool::gpu::ReferenceConstants>());
     assert_eq!(size(&tool::kernels::VISIBILITY), size_of::<tool::gpu::VisibilityConstants>());
     assert_eq!(kernels::TEXTURE_LOAD.constants(), [constant::LOAD_STEPS]);
-    assert_eq!(tool::kernels::REFERENCE.constants(), [tool::kernels::SHADOWS, tool::kernels::COUPLED]);
+    let of_reference = [tool::kernels::SHADOWS, tool::kernels::COUPLED, tool::kernels::HAS_ALPHA];
+    assert_eq!(tool::kernels::REFERENCE.constants(), of_reference);
     assert!(shade.constants().contains(&constant::SAMPLES) && !shade.constants().contains(&constant::CULL));
 }
 

@@ -141,3 +141,27 @@ fn they_are_as_dark_as_by_monte_carlo() {
         assert!(found < 0.9 * truth, "{name}: {found} of {truth}");
     }
 }
+
+#[test]
+fn a_camera_sees_through_what_is_cut_out_of_layers_in_one_plane() {
+    let Some(engine) = TestEngine::new() else { return };
+    let above = Camera { position: DVec3::Y * 2.0, half_height: 0.35, ..camera() };
+    let is_met = |first: usize, kept: u32| {
+        // Two sheets in the floor's own plane and one above it; of each some quarters are there
+        let mut scene = scene(&[0.0, 0.0, 0.2], 6.0);
+        textured(&mut scene, 2, |x, y| x + 2 * y < kept);
+        scene.materials[1].alpha_cutoff = Some(0.5);
+        scene.triangles.drain(..first);
+        let buffers = SceneBuffers::new(&scene, DVec3::ZERO).unwrap();
+        let constants = buffers.constants(&above, SIZE, Vec3::ZERO);
+        let renderer = SceneRenderer::new(&engine, &buffers, &[light()], constants, SIZE);
+        let met = renderer.unwrap().radiance().unwrap().iter().map(|pixel| pixel.w).sum::<f32>();
+        met / (SIZE[0] * SIZE[1]) as f32
+    };
+    for kept in [0, 1, 2] {
+        assert_eq!(is_met(0, kept), 1.0, "the floor is lost");
+        // The twin: without the floor they leave holes; the edges of what is kept are smooth
+        let part = is_met(2, kept);
+        assert!((0.2 * kept as f32..=0.5 * kept as f32).contains(&part), "{kept}: {part}");
+    }
+}

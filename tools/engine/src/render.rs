@@ -13,7 +13,7 @@ use arealight::{Effects, Light, LightSummary, PackedLights, Plane, Planes, Quali
 use arealight_scene::SceneBuffers;
 use arealight_tool_kernels::LightSampling;
 use arealight_tool_kernels::gpu::{ReferenceConstants, VisibilityConstants};
-use arealight_tool_kernels::kernels::{COUPLED, REFERENCE, SHADOWS, VISIBILITY};
+use arealight_tool_kernels::kernels::{COUPLED, HAS_ALPHA, REFERENCE, SHADOWS, VISIBILITY};
 use arealight_vk::{Resource, ShadeFrame, ShadeResources};
 use ash::vk;
 use bytemuck::Pod;
@@ -61,6 +61,7 @@ pub struct SceneRenderer<'a> {
     camera: VisibilityConstants,
     g_buffer: GBuffer,
     geometry: [Buffer; GEOMETRY.len()],
+    has_alpha: (u32, u32),
     light_buffer: Buffer,
     vertex_buffer: Buffer,
     shape_buffer: Buffer,
@@ -98,6 +99,7 @@ impl<'a> SceneRenderer<'a> {
             camera,
             g_buffer: GBuffer::new(engine, size)?,
             geometry,
+            has_alpha: (HAS_ALPHA, scene.materials.iter().any(|material| !material.is_whole()).into()),
             light_buffer: engine.storage("lights", &packed.lights)?,
             vertex_buffer: engine.storage("light vertices", &packed.vertices)?,
             shape_buffer: engine.storage("shapes", &packed.shapes)?,
@@ -110,7 +112,7 @@ impl<'a> SceneRenderer<'a> {
     /// Finds the surface at each pixel, and writes the emission that the camera sees. GPU time, where the
     /// queue has timestamps.
     pub fn visibility(&mut self) -> Result<Option<Duration>, EngineError> {
-        let pass = self.engine.pass(&VISIBILITY, &[], &self.bound_to(&VISIBILITY, &[]))?;
+        let pass = self.engine.pass(&VISIBILITY, &[self.has_alpha], &self.bound_to(&VISIBILITY, &[]))?;
         let took = self.engine.host().try_submit_timed(|commands| {
             for image in self.g_buffer.surfaces().chain([&self.g_buffer.radiance]) {
                 image.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
@@ -215,7 +217,7 @@ impl<'a> SceneRenderer<'a> {
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
         let Reference { samples, shadows, coupled, seed } = reference;
-        let specialization = [(SHADOWS, shadows.into()), (COUPLED, coupled.into())];
+        let specialization = [(SHADOWS, shadows.into()), (COUPLED, coupled.into()), self.has_alpha];
         self.sampled(
             (&REFERENCE, &specialization),
             (samples, shadows),

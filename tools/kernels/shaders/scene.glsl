@@ -16,6 +16,9 @@
 #include "octahedron.glsl"
 #include "srgb.glsl"
 
+// Whether a material has alpha. Where none has, none is asked for: the test would be half of a ray's time.
+layout(constant_id = 102) const bool HAS_ALPHA = true;
+
 struct ArealightGpuTriangle {
     vec3 p0;
     uint material;
@@ -237,8 +240,7 @@ const int TRANSMISSION_COLOR_TEXEL = 15;
 const int GLASS_TEXEL = 16;
 const int TEXELS = 17;
 
-// What a pixel sees of each; of all in one place, which drivers compile once and a group of pixels without
-// textures never comes to.
+// What a pixel sees of each, in one place: drivers compile it once, and pixels without textures skip it.
 vec4[TEXELS] material_texels(ArealightGpuMaterial material, TextureFootprint seen) {
     uint indices[TEXELS] = uint[TEXELS](
         material.base_color_texture, material.metallic_roughness_texture, material.normal_texture,
@@ -282,7 +284,7 @@ vec4 vertex_color(ArealightGpuTriangle triangle, vec2 barycentric) {
 // What part of a triangle is there at a place: all, or by the material's alpha, of a mask all or nothing.
 float surface_alpha(ArealightGpuTriangle triangle, vec2 barycentric) {
     ArealightGpuMaterial material = materials[triangle.material];
-    if ((material.flags & (MATERIAL_ALPHA_MASK | MATERIAL_ALPHA_BLEND)) == 0u) {
+    if (!HAS_ALPHA || (material.flags & (MATERIAL_ALPHA_MASK | MATERIAL_ALPHA_BLEND)) == 0u) {
         return 1.0;
     }
     float alpha = material.base_color_texture == NO_TEXTURE ? 1.0

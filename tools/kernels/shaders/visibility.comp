@@ -32,31 +32,15 @@ layout(push_constant, std430) uniform VisibilityConstants {
     uint reserved4;
 } constants;
 
-// Where the ray has come through: what is nearer, or as near with a lower number, is not met again.
-BvhHit passed = BvhHit(0.0, 0u, vec2(0.0), false);
-
-// Back faces are met only where the material has two sides.
+// Back faces are met only where the material has two sides, and nothing less than half of which is there.
 void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit) {
     ArealightGpuTriangle triangle = triangles[index];
     bool double_sided = (materials[triangle.material].flags & MATERIAL_DOUBLE_SIDED) != 0u;
     BvhHit met;
     if (bvh_intersect(triangle.p0, triangle.p1, triangle.p2, index, origin, direction, hit.distance, met)
-        && (double_sided || !met.back)
-        && (met.distance > passed.distance || (met.distance == passed.distance && index > passed.triangle))) {
+        && (double_sided || !met.back) && surface_alpha(triangle, met.barycentric) >= 0.5) {
         hit = met;
     }
-}
-
-// What a ray meets first of which at least half is there. Alpha is asked of what is nearest alone: within the
-// traversal it would be half of the time.
-BvhHit first_hit(vec3 origin, vec3 direction) {
-    bool goes_on = true;
-    while (goes_on) {
-        passed = bvh_trace(origin, direction, 3e38, false);
-        goes_on = passed.triangle != BVH_NO_TRIANGLE
-               && surface_alpha(triangles[passed.triangle], passed.barycentric) < 0.5;
-    }
-    return passed;
 }
 
 // The part of the light that sheen keeps from neither reflection nor transmission below it.
@@ -89,7 +73,7 @@ void main() {
     bool parallel = constants.orthographic != 0u;
     vec3 direction = arealight_normalize_or(parallel ? constants.forward : constants.forward + across,
                                             vec3(0.0, 0.0, -1.0));
-    BvhHit hit = first_hit(parallel ? constants.camera + across : constants.camera, direction);
+    BvhHit hit = bvh_trace(parallel ? constants.camera + across : constants.camera, direction, 3e38, false);
 
     if (hit.triangle == BVH_NO_TRIANGLE) {
         imageStore(out_position, pixel, vec4(0.0));

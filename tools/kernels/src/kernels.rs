@@ -21,6 +21,8 @@ pub const SHADOWS: u32 = 100;
 /// Id of a specialisation constant of [`REFERENCE`]: 1 where diffuse lobes get what the Fresnel term leaves,
 /// as in glTF, else 0.
 pub const COUPLED: u32 = 101;
+/// Id of a specialisation constant of kernels that send rays: 0 where no material has alpha, else 1.
+pub const HAS_ALPHA: u32 = 102;
 
 /// Integrates the true BRDF over the same lights by Monte Carlo, on the same G-buffer. Push constants:
 /// [`crate::gpu::ReferenceConstants`].

@@ -1,10 +1,10 @@
 //! What each frame in flight has for itself.
 
 use super::{LEAST, mapped};
-use crate::context::Context;
+use crate::context::{Context, color_range};
 use crate::error::Error;
 use crate::medium::{MediumPass, MediumResources};
-use crate::memory::{Buffer, Image, SharedAllocator, WHOLE};
+use crate::memory::{Buffer, Image, SharedAllocator};
 use crate::resource::Resource;
 use crate::shade::{ShadePass, ShadeResources};
 use crate::shadows::{BlockerResources, ShadowPass, ShadowResources};
@@ -187,7 +187,7 @@ impl Place {
         let barrier = |image: &Image| {
             vk::ImageMemoryBarrier::default()
                 .image(image.raw)
-                .subresource_range(WHOLE)
+                .subresource_range(color_range(0..1, 1))
                 .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
                 .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
                 .old_layout(vk::ImageLayout::UNDEFINED)
@@ -201,13 +201,9 @@ impl Place {
         }
         // SAFETY: the same contract; the images are the place's.
         unsafe {
-            context.device.cmd_pipeline_barrier(
+            context.record_images(
                 command_buffer,
-                vk::PipelineStageFlags::TOP_OF_PIPE,
-                vk::PipelineStageFlags::COMPUTE_SHADER,
-                vk::DependencyFlags::empty(),
-                &[],
-                &[],
+                (vk::PipelineStageFlags::TOP_OF_PIPE, vk::PipelineStageFlags::COMPUTE_SHADER),
                 &images,
             );
         }

@@ -140,7 +140,7 @@ impl SceneRenderer<'_> {
         progress: impl FnMut(u32),
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let specialization = [(SHADOWS, shadows.into())];
+        let specialization = [(SHADOWS, shadows.into()), self.has_alpha];
         self.sampled(
             (&REFERENCE_MEDIUM, &specialization),
             (samples, shadows),
