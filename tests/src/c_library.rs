@@ -5,13 +5,12 @@ use crate::one_pixel::{self, OnePixel};
 use arealight::plan::RadianceFormat;
 use arealight::{Light, Plane};
 use arealight_capi::{
-    AREALIGHT_ABI_VERSION, AREALIGHT_LIGHT_POLYGON, AREALIGHT_WHOLE_SIZE, Arealight, ArealightBuffer,
-    ArealightFrame, ArealightFunction, ArealightHost, ArealightImage, ArealightLight, ArealightLightSummary,
-    ArealightMemory, ArealightPackedLights, ArealightPass, ArealightPassOptions, ArealightResources,
-    ArealightResult, ArealightSetLayout, ArealightUpload, ArealightViewport, arealight_create,
-    arealight_destroy, arealight_last_error, arealight_pack_lights, arealight_pass_create,
-    arealight_pass_record, arealight_pass_record_pushed, arealight_pass_set_layout, arealight_pass_write_set,
-    arealight_table_bind_memory, arealight_table_memory, arealight_table_upload,
+    AREALIGHT_ABI_VERSION, AREALIGHT_WHOLE_SIZE, Arealight, ArealightBuffer, ArealightFrame,
+    ArealightFunction, ArealightHost, ArealightImage, ArealightLight, ArealightMemory, ArealightPackedLights,
+    ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult, ArealightSetLayout,
+    ArealightUpload, arealight_create, arealight_destroy, arealight_last_error, arealight_pack_lights,
+    arealight_pass_create, arealight_pass_record, arealight_pass_record_pushed, arealight_pass_set_layout,
+    arealight_pass_write_set, arealight_table_bind_memory, arealight_table_memory, arealight_table_upload,
 };
 use arealight_engine::host::{Buffer, DescriptorPool, Image, Location, Usage};
 use arealight_vk::Resource;
@@ -56,36 +55,9 @@ pub fn no_host() -> ArealightHost {
     }
 }
 
-/// A light without vertices.
-pub const NO_LIGHT: ArealightLight = ArealightLight {
-    name: null(),
-    kind: AREALIGHT_LIGHT_POLYGON,
-    two_sided: 0,
-    radiance: [1.0; 3],
-    textured: 0,
-    texture_layer: 0,
-    vertex_count: 0,
-    vertices: null(),
-    texture_coordinates: null(),
-    hole_vertex_counts: null(),
-    face_vertex_counts: null(),
-    hole_count: 0,
-    face_count: 0,
-    center: [0.0; 3],
-    axis_u: [0.0; 3],
-    axis_v: [0.0; 3],
-    radius: 0.0,
-    ends: 0,
-    profile_pair_count: 0,
-    profile: null(),
-    profile_levels: 0,
-    has_opening: 0,
-    opening_center: [0.0; 3],
-    opening_axis_u: [0.0; 3],
-    opening_axis_v: [0.0; 3],
-    opening_housed: 0,
-    reserved: 0,
-};
+/// A light without vertices: zeros, with which a host in C begins, but for its radiance.
+// SAFETY: numbers and pointers alone.
+pub const NO_LIGHT: ArealightLight = ArealightLight { radiance: [1.0; 3], ..unsafe { std::mem::zeroed() } };
 
 /// A light of constant radiance, whose vertices it points to.
 pub fn c_lamp(light: &Light) -> ArealightLight {
@@ -108,32 +80,12 @@ pub fn whole(buffer: &Buffer) -> ArealightBuffer {
 }
 
 /// A frame of no pixels and no light.
-pub const NO_FRAME: ArealightFrame = ArealightFrame {
-    width: 0,
-    height: 0,
-    camera: [0.0; 3],
-    lights: ArealightLightSummary { light_count: 0, quad_count: 0, shape_count: 0, effects: 0 },
-    seed: 0,
-    position_from_clip: null(),
-    tile_lists: ArealightBuffer { buffer: 0, offset: 0, range: 0 },
-    viewport: ArealightViewport { x: 0.0, y: 0.0, width: 0.0, height: 0.0, min_depth: 0.0, max_depth: 0.0 },
-    offset: [0; 2],
-    rows: [0; 2],
-    stencil_compare_mask: 0,
-    stencil_reference: 0,
-    light_offsets: [0; 3],
-};
+// SAFETY: numbers and pointers alone.
+pub const NO_FRAME: ArealightFrame = unsafe { std::mem::zeroed() };
 
 /// To ask for the sizes alone.
-pub const NO_ARRAYS: ArealightPackedLights = ArealightPackedLights {
-    lights: null_mut(),
-    vertices: null_mut(),
-    shapes: null_mut(),
-    lights_size: 0,
-    vertices_size: 0,
-    shapes_size: 0,
-    summary: ArealightLightSummary { light_count: 0, quad_count: 0, shape_count: 0, effects: 0 },
-};
+// SAFETY: as above.
+pub const NO_ARRAYS: ArealightPackedLights = unsafe { std::mem::zeroed() };
 
 /// The library on a device of the tests.
 pub struct CLibrary<'a> {

@@ -1,7 +1,9 @@
-"""The page of `arealight bench`: one HTML file that needs nothing else, and has no script."""
+"""The page of `arealight bench`: one HTML file that needs nothing else; without its script it shows as much."""
 
+import json
 import re
 from html import escape
+from urllib.parse import quote
 
 import plots
 from plots import FAINT, GOOD, NOISE, OURS, THEIRS, figure, log_axis, number, percent, side, svg
@@ -18,12 +20,50 @@ h1 { font-size: 1.7rem; line-height: 1.2; } h2 { font-size: 1.25rem; margin: 2.4
 .facts div, figure { background: var(--card); border-radius: 8px; padding: .6rem .8rem; margin: 0; }
 .facts b { display: block; font-size: 1.25rem; } .facts span, figcaption { font-size: .85rem; }
 img, svg { width: 100%; height: auto; display: block; border-radius: 4px; margin-bottom: .3rem; }
-.table { overflow-x: auto; } table { border-collapse: collapse; font-size: .86rem; }
+/* What goes on to the right has a shadow there */
+.table { overflow-x: auto; background: linear-gradient(to left, var(--paper) 1.5rem, transparent) right / 3rem 100% no-repeat local,
+  linear-gradient(to left, color-mix(in srgb, var(--ink), transparent 70%), transparent) right / 1rem 100% no-repeat; }
+.table svg { min-width: 40rem; } #patch_1 path, #patch_2 path { fill: none !important; } .hidden { opacity: .4; } .sorts, .hides { cursor: pointer; }
+table { border-collapse: collapse; font-size: .86rem; }
 th, td { padding: .3rem .6rem; text-align: right; border-bottom: 1px solid var(--faint); white-space: nowrap; }
 th:first-child, td:first-child, .words td, .words th { text-align: left; } .words td:last-child { white-space: normal; }
 .scale { display: flex; align-items: center; gap: .5rem; font-size: .8rem; }
 .scale div { flex: 0 1 18rem; height: .8rem; }
 """
+
+
+# A click on a head sorts by its column; a method's row shows its dots under the pointer, and hides them by a click
+SCRIPT = """
+const cell = (row, at) => row.cells[at]?.textContent.replace("●", "").trim() ?? "";
+const dots = [...document.querySelectorAll("g[id^='dot:']")], hidden = new Set();
+const method = (dot) => dot.id.split(":")[2];
+const show = (one) => dots.forEach((dot) => {
+  dot.style.opacity = hidden.has(method(dot)) ? 0 : one && one !== method(dot) ? 0.1 : 1;
+});
+document.querySelectorAll("th").forEach((head) => head.classList.add("sorts"));
+document.addEventListener("click", ({ target }) => {
+  const head = target.closest("th"), row = target.closest(".words tr"), name = row && cell(row, 0);
+  if (head) {
+    const rows = [...head.closest("tbody").rows].slice(1), at = head.cellIndex;
+    const turn = head.dataset.turn = head.dataset.turn === "1" ? -1 : 1;
+    const number = (one) => parseFloat(cell(one, at)) || (/^[0.]/.test(cell(one, at)) ? 0 : Infinity);
+    const order = (a, b) => number(a) - number(b) || cell(a, at).localeCompare(cell(b, at));
+    rows.sort((a, b) => turn * order(a, b)).forEach((one) => one.parentNode.append(one));
+  } else if (dots.some((dot) => method(dot) === name)) {
+    row.classList.toggle("hidden", !hidden.delete(name) && hidden.add(name));
+    show();
+  }
+});
+document.addEventListener("mouseover", ({ target }) => {
+  const row = target.closest("tr"), name = row && cell(row, 0);
+  show(dots.some((dot) => method(dot) === name && !hidden.has(name)) && name);
+});
+"""
+
+
+def chart(made, title):
+    """A figure that is scrolled where the page is narrow."""
+    return f'<div class="table">{svg(made, title, alone=False)}</div>'
 
 
 def table(rows, kind=""):
@@ -69,7 +109,9 @@ def pareto(found, only_ours):
         best = min(best, y) if colour == OURS else best
     axes.plot(*zip(*front), color=OURS, linestyle=":", lw=1.5, alpha=0.6)
     plots.scatter(axes, dots, named)
-    return svg(made, "Error against time", alone=False)
+    for line, dot in zip(axes.lines[1:], dots):
+        line.set_gid(f"dot:{only_ours}:{dot[0]}")
+    return chart(made, "Error against time")
 
 
 def parts(found):
@@ -85,8 +127,8 @@ def parts(found):
     for place, row in enumerate(rows):
         for colour, part in kinds:
             if row["errors"][part] is not None:
-                axes.plot(max(row["errors"][part], 1e-7), place, color=colour, **plots.DOT)
-    return svg(made, "Fit, table and integral error of every method", alone=False)
+                axes.plot(max(row["errors"][part], 1e-7), place, color=colour, gid=f"dot:{part}:{row['name']}", **plots.DOT)
+    return chart(made, "Fit, table and integral error of every method")
 
 
 def effects(found):
@@ -108,7 +150,7 @@ def effects(found):
                               textcoords="offset points", va="center", fontsize=10)
     axes.margins(x=0.1)
     axes.axvline(0, color=FAINT)
-    return svg(made, "What each effect adds to the time of the default level", alone=False)
+    return chart(made, "What each effect adds to the time of the default level")
 
 
 def pictures(found):
@@ -174,7 +216,7 @@ def page(found):
         ("What is compared", "Yardsticks are named by their school. They run in kernels of ours, on the same work: the same "
          "G-buffer, lights, lobes and table, so the form factor alone differs. Those of <em>published quality</em> look up a "
          "table with one matrix for every reflectance, whose errors are those of the table published with Heitz et al. 2016 "
-         "within 10 %.", table(methods, "words")),
+         "within 10 %. The charts show a row's dots under the pointer; a click hides them.", table(methods, "words")),
         ("Error against time", against(default, rows),
          pareto(found, False) + "<p>Our quality levels from nearer; dotted: the Pareto front.</p>" + pareto(found, True)),
         ("Where the error comes from", "The shape of the fitted lobe is most of our error. A yardstick's integral error is "
@@ -191,9 +233,11 @@ def page(found):
              "in the captions are free of that noise: the reference is two independent halves, and what these differ by is "
              "subtracted; in brackets is what stays uncertain, by 95 %. Yardsticks have a table of published quality.",
              pictures(found)))
-    sections.append(("All numbers", "Milliseconds are for a light and a megapixel. Equal samples: those of Monte Carlo with "
+    data = quote(json.dumps({key: value for key, value in found.items() if key not in ("markdown", "pictures")}))
+    sections.append(("All numbers", f'<a download="bench.json" href="data:application/json,{data}">As JSON.</a> '
+                     "A click on a head sorts. Milliseconds are for a light and a megapixel. Equal samples: those of Monte Carlo with "
                      f"the same error, and with the same time. Seed {found['seed']}.", numbers(found["markdown"])))
     body = head(found, default, rows) + "".join(f"<h2>{title}</h2><p>{says}</p>{html}" for title, says, html in sections)
     return (f'<!doctype html><html lang="en"><head><meta charset="utf-8"><meta name="viewport" '
             f'content="width=device-width, initial-scale=1"><title>What accuracy costs: {escape(found["device"])}</title>'
-            f"<style>{STYLE}</style></head><body>{body}</body></html>\n")
+            f"<style>{STYLE}</style></head><body>{body}<script>{SCRIPT}</script></body></html>\n")

@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.text import Text
 
 import docs
+import page
 import plots
 
 
@@ -21,6 +22,14 @@ class Drawings(unittest.TestCase):
             stored = (docs.ROOT / "docs/images" / name).read_text()
             self.assertEqual(words(drawn), words(stored), f"{name}: tools/plots/docs.py docs/images")
             self.assertNotIn("nan", drawn)
+
+    def test_rows_of_the_report_find_their_dots(self):
+        report = (docs.ROOT / "docs/report-lavapipe.html").read_text()
+        self.assertIn(page.SCRIPT, report)
+        methods = set(re.findall("●</span> ([^<]*)</td>", report))
+        for chart in ("False", "fit"):
+            dots = {dot for dot in re.findall(f'id="dot:{chart}:([^"]*)"', report) if not dot.isdigit()}
+            self.assertEqual(dots, methods, chart)
 
     def test_a_box_of_walls_sums_to_one(self):
         ground = np.array([[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]], float)

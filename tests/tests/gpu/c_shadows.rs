@@ -311,18 +311,9 @@ fn media_of_c_dim_and_scatter_what_is_known() {
         let [a, b, c, d] = level(1e5, z).map(DVec3::as_vec3);
         ShadowPatch { blockers: vec![[a, b, c], [a, c, d]], lights: lights.clone(), ..patch() }
     };
-    let clear = ArealightMediumFrame {
-        frame: null(),
-        host_set: 0,
-        froxels: [4, 3, 64],
-        scattering: [0.0; 3],
-        extinction: 0.0,
-        anisotropy: 0.0,
-        nearest: 1.0,
-        farthest: 8.0,
-        seed: 0,
-        cull_radiance: 0.0,
-    };
+    // SAFETY: numbers and pointers alone.
+    let zeros: ArealightMediumFrame = unsafe { std::mem::zeroed() };
+    let clear = ArealightMediumFrame { froxels: [4, 3, 64], nearest: 1.0, farthest: 8.0, ..zeros };
     let seen = |frame: &_, rays, wall| passes.run(&behind(wall), 0, Some((rays, frame)))[0].truncate();
     let (before, away) = (seen(&clear, 0, 2.0), patch().view.length());
     let scattering = [0.1, 0.2, 0.3];
