@@ -21,9 +21,11 @@ h1 { font-size: 1.7rem; line-height: 1.2; } h2 { font-size: 1.25rem; margin: 2.4
 .facts b { display: block; font-size: 1.25rem; } .facts span, figcaption { font-size: .85rem; }
 img, svg { width: 100%; height: auto; display: block; border-radius: 4px; margin-bottom: .3rem; }
 /* What goes on to the right has a shadow there */
-.table { overflow-x: auto; background: linear-gradient(to left, var(--paper) 1.5rem, transparent) right / 3rem 100% no-repeat local,
-  linear-gradient(to left, color-mix(in srgb, var(--ink), transparent 70%), transparent) right / 1rem 100% no-repeat; }
-.table svg { min-width: 40rem; } #patch_1 path, #patch_2 path { fill: none !important; } .hidden { opacity: .4; } .sorts, .hides { cursor: pointer; }
+.table { --dark: color-mix(in srgb, var(--ink), transparent 70%); overflow-x: auto; background:
+  linear-gradient(to left, var(--paper) 1.5rem, transparent) right / 3rem 100% no-repeat local,
+  linear-gradient(to left, var(--dark), transparent) right / 1rem 100% no-repeat; }
+.table svg { min-width: 40rem; } #patch_1 path, #patch_2 path { fill: none !important; }
+th, .words td { cursor: pointer; } .hidden { opacity: .4; }
 table { border-collapse: collapse; font-size: .86rem; }
 th, td { padding: .3rem .6rem; text-align: right; border-bottom: 1px solid var(--faint); white-space: nowrap; }
 th:first-child, td:first-child, .words td, .words th { text-align: left; } .words td:last-child { white-space: normal; }
@@ -40,17 +42,17 @@ const method = (dot) => dot.id.split(":")[2];
 const show = (one) => dots.forEach((dot) => {
   dot.style.opacity = hidden.has(method(dot)) ? 0 : one && one !== method(dot) ? 0.1 : 1;
 });
-document.querySelectorAll("th").forEach((head) => head.classList.add("sorts"));
 document.addEventListener("click", ({ target }) => {
   const head = target.closest("th"), row = target.closest(".words tr"), name = row && cell(row, 0);
   if (head) {
     const rows = [...head.closest("tbody").rows].slice(1), at = head.cellIndex;
     const turn = head.dataset.turn = head.dataset.turn === "1" ? -1 : 1;
-    const number = (one) => parseFloat(cell(one, at)) || (/^[0.]/.test(cell(one, at)) ? 0 : Infinity);
+    const value = (one) => parseFloat(cell(one, at));
+    const number = (one) => isNaN(value(one)) ? Infinity : value(one);
     const order = (a, b) => number(a) - number(b) || cell(a, at).localeCompare(cell(b, at));
     rows.sort((a, b) => turn * order(a, b)).forEach((one) => one.parentNode.append(one));
   } else if (dots.some((dot) => method(dot) === name)) {
-    row.classList.toggle("hidden", !hidden.delete(name) && hidden.add(name));
+    row.classList.toggle("hidden") ? hidden.add(name) : hidden.delete(name);
     show();
   }
 });

@@ -99,7 +99,7 @@ impl<'a> SceneRenderer<'a> {
             camera,
             g_buffer: GBuffer::new(engine, size)?,
             geometry,
-            has_alpha: (HAS_ALPHA, scene.materials.iter().any(|material| !material.is_whole()).into()),
+            has_alpha: (HAS_ALPHA, scene.has_alpha().into()),
             light_buffer: engine.storage("lights", &packed.lights)?,
             vertex_buffer: engine.storage("light vertices", &packed.vertices)?,
             shape_buffer: engine.storage("shapes", &packed.shapes)?,

@@ -50,6 +50,11 @@ pub enum BufferError {
 }
 
 impl SceneBuffers {
+    /// Whether a material is not all there: what sends rays asks for alpha then.
+    pub fn has_alpha(&self) -> bool {
+        self.materials.iter().any(|material| !material.is_whole())
+    }
+
     /// Packs `scene` relative to `origin`; the subtraction is made in float64. Use the same origin for the
     /// lights ([`arealight::PackedLights::new`]).
     ///

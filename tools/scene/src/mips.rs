@@ -142,11 +142,8 @@ mod tests {
             let image = image(width, height, vec![0xff80_8080; (width * height) as usize]);
             for content in [Content::Numbers, Content::Colors, Content::Normals] {
                 let texels = levels(&image, content);
-                assert_eq!(
-                    (texels.len() as u64, count([width, height])),
-                    (expected, expected),
-                    "{content:?}"
-                );
+                let counts = [texels.len() as u64, count([width, height])];
+                assert_eq!(counts, [expected; 2], "{content:?}");
             }
         }
     }

@@ -105,7 +105,7 @@ impl SceneRenderer<'_> {
         let (engine, host) = (self.engine, self.engine.host());
         let options = self.seen(options);
         // Blockers that are cut out are asked for in a module and a set of our own
-        let is_masked = scene.materials.iter().any(|material| !material.is_whole());
+        let is_masked = scene.has_alpha();
         let masks = is_masked.then(|| self.masks()).transpose()?;
         let module = is_masked.then(|| SHADOW_RAYS_MASKED.words());
         let host_set = masks.as_ref().map(|masks| masks.layout);
