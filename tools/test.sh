@@ -20,6 +20,13 @@ gpu_test_floor=300
 tools/setup.sh test || exit 1
 SHADERC_LIB_DIR="$(tools/shaderc.sh)" || exit 1
 export SHADERC_LIB_DIR
+# Other makers' compilers: what builds them takes two minutes, so in the long form, or where they are built
+if [[ "${AREALIGHT_LONG:-}" == 1 || -d "${CARGO_TARGET_DIR:-target}/compilers" ]]; then
+    AREALIGHT_COMPILERS="$(tools/compilers.sh)" || exit 1
+    export AREALIGHT_COMPILERS
+else
+    echo "not compiled for Intel's GPUs and Adreno: that takes AREALIGHT_LONG=1, or tools/compilers.sh before"
+fi
 
 scratch="$(mktemp -d)"
 trap 'rm -rf "$scratch"' EXIT

@@ -12,7 +12,6 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const int METHOD = 0;
 
 const int METHOD_OUTLINE = 0;
-const int METHOD_OUTLINE_DIFFERENCE = 1;
 const int METHOD_QUAD = 8;
 const int METHOD_QUAD_DIFFERENCE = 9;
 const int METHOD_YARDSTICK = 32; // plus a school of yardsticks.glsl

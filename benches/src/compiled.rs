@@ -1,20 +1,21 @@
 //! What a GPU's compiler makes of the kernels: registers, waves, instructions, and its own estimate of
-//! cycles, beside yardsticks. Nothing runs, and no GPU is needed: [`arealight_engine::host::null_hardware`].
+//! cycles, beside yardsticks. Nothing runs, and no GPU is needed: [`arealight_engine::host::families`].
 
 mod check;
-mod own_words;
 mod rows;
 mod text;
+mod words;
 
 pub(crate) use rows::path_cost;
 
-pub use check::{Check, Finding, OtherDriver, THROUGHPUT_TOLERANCE};
-pub use own_words::{OwnWords, of_device};
+pub use check::{Check, Finding, OtherDriver};
 pub use rows::{DEFERRED_YARDSTICK, Row, YARDSTICK, rows};
 
 use arealight_engine::host::HostError;
-use arealight_engine::host::null_hardware::{Compiler, Statistics};
+use arealight_engine::host::null_hardware::{Compiler, Said};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use words::Words;
 
 /// Statistics of shaders on families of GPU.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -43,59 +44,22 @@ pub struct Measured {
     pub lights: String,
     /// [`Row::level`].
     pub level: String,
-    /// Inverse throughput over that of [`Row::yardstick`]; `None` where there is none.
+    /// [`Family::work`] over that of [`Row::yardstick`]; `None` where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ratio: Option<f64>,
-    /// The compiler's estimate of the cycles that a wave keeps a SIMD's units busy.
-    pub inverse_throughput: u64,
-    /// Vector registers an invocation.
-    pub vgprs: u64,
-    /// Scalar registers a wave.
-    pub sgprs: u64,
-    /// How many waves a SIMD holds at a time.
-    pub waves: u64,
-    /// Vector registers that did not fit and went to memory.
-    pub spilled_vgprs: u64,
-    /// Scalar registers that did not fit and went to lanes of vector registers.
-    pub spilled_sgprs: u64,
-    /// Memory of its own a wave, in bytes.
-    pub scratch: u64,
-    /// Instructions.
-    pub instructions: u64,
-    /// Branches among them.
-    pub branches: u64,
-    /// Machine code in bytes.
-    pub code_size: u64,
-    /// The compiler's estimate of the cycles from a wave's start to its end.
-    pub latency: u64,
     /// Invocations a wave.
     pub subgroup_size: u32,
+    /// What the driver says, by its own names.
+    pub said: BTreeMap<String, u64>,
     /// Processor time that making the pipeline took, in seconds.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
 }
 
 impl Measured {
-    fn new(row: &Row, said: &Statistics) -> Self {
-        Self {
-            kernel: row.kernel.to_owned(),
-            lights: row.lights.to_owned(),
-            level: row.level.to_owned(),
-            ratio: None,
-            inverse_throughput: said.inverse_throughput,
-            vgprs: said.vgprs,
-            sgprs: said.sgprs,
-            waves: said.waves,
-            spilled_vgprs: said.spilled_vgprs,
-            spilled_sgprs: said.spilled_sgprs,
-            scratch: said.scratch,
-            instructions: said.instructions,
-            branches: said.branches,
-            code_size: said.code_size,
-            latency: said.latency,
-            subgroup_size: said.subgroup_size,
-            seconds: said.seconds,
-        }
+    /// What the driver says by that name.
+    pub fn number(&self, name: &str) -> u64 {
+        self.said.get(name).copied().unwrap_or(0)
     }
 
     /// As [`Row::name`].
@@ -115,9 +79,28 @@ pub fn matching(pattern: &str) -> Vec<Row> {
     chosen.cloned().collect()
 }
 
-/// Compiles a row on this process's null hardware.
+/// Compiles a row.
+///
+/// # Errors
+/// Where no pipeline can be made of it, or the driver doesn't say what [`Check`] and the ratios need.
 pub fn measure(compiler: &Compiler, row: &Row) -> Result<Measured, HostError> {
-    Ok(Measured::new(row, &compiler.statistics(&row.shader())?))
+    let Said { subgroup_size, numbers: said, seconds } = compiler.said(&row.shader())?;
+    if let Some(name) = Words::of(compiler.driver()).needed().find(|name| !said.contains_key(*name)) {
+        return Err(HostError::MissingStatistic(name));
+    }
+    let (kernel, lights, level) = (row.kernel.to_owned(), row.lights.to_owned(), row.level.to_owned());
+    Ok(Measured { kernel, lights, level, ratio: None, subgroup_size, said, seconds })
+}
+
+/// Compiles rows by a device's own driver, as a family of the device's name. `progress` is told of each.
+///
+/// # Errors
+/// Where there is no such device, or it gives no statistics.
+pub fn of_device(device: Option<&str>, rows: &[Row], progress: &dyn Fn()) -> Result<Family, HostError> {
+    let compiler = Compiler::of_device(device)?;
+    let measured = rows.iter().map(|row| measure(&compiler, row).inspect(|_| progress()));
+    let measured = measured.collect::<Result<_, HostError>>()?;
+    Ok(Family::new(compiler.device_name().to_owned(), compiler.driver().to_owned(), measured))
 }
 
 impl Family {
@@ -125,8 +108,8 @@ impl Family {
     pub fn new(family: String, driver: String, rows: Vec<Measured>) -> Self {
         let mut found = Self { family, driver, rows };
         for row in self::rows() {
-            let throughput = |name: &str| found.find(name).map(|one| one.inverse_throughput as f64);
-            let ratio = row.yardstick.and_then(throughput).zip(throughput(&row.name()));
+            let work = |name: &str| found.find(name).and_then(|one| found.work(one));
+            let ratio = row.yardstick.and_then(work).zip(work(&row.name()));
             let ratio = ratio.map(|(yardstick, one)| one / yardstick);
             if let Some(measured) = found.rows.iter_mut().find(|measured| measured.name() == row.name()) {
                 // Three decimals: the rest is no difference to anybody
@@ -134,6 +117,12 @@ impl Family {
             }
         }
         found
+    }
+
+    /// The driver's estimate of what an invocation costs; `None` of a driver that gives none.
+    pub fn work(&self, row: &Measured) -> Option<f64> {
+        let work = row.number(Words::of(&self.driver).work?);
+        Some(work as f64 / f64::from(row.subgroup_size))
     }
 
     /// The row of that name.
@@ -169,7 +158,13 @@ impl Compiled {
             serde_json::to_string(value).unwrap_or_default()
         }
         let family = |family: &Family| {
-            let rows = family.rows.iter().map(|row| json(&Measured { seconds: None, ..row.clone() }));
+            let words = Words::of(&family.driver);
+            let row = |row: &Measured| {
+                let mut row = Measured { seconds: None, ..row.clone() };
+                row.said.retain(|name, _| words.needed().any(|needed| needed == name));
+                json(&row)
+            };
+            let rows = family.rows.iter().map(row);
             let rows: Vec<String> = rows.map(|row| format!("        {row}")).collect();
             format!(
                 "    {{\n      \"family\": {},\n      \"driver\": {},\n      \"rows\": \

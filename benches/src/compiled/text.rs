@@ -1,11 +1,9 @@
 //! Statistics for people: as text for a terminal, as Markdown for the documents.
 
+use super::words::Words;
 use super::{Compiled, Family, Measured};
 use crate::table::Table;
 use std::fmt::Write as _;
-
-const HEADS: &str = " | ratio | inverse throughput | VGPRs | waves | SGPRs | spilled VGPRs | spilled SGPRs | \
-    scratch | instructions | branches | bytes | latency | CPU s";
 
 impl Compiled {
     /// The tables for a terminal.
@@ -49,32 +47,32 @@ fn crowded(family: &Family) -> String {
         let names = if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) };
         format!("- {what}, {count} of {all} rows{names}\n")
     };
-    let most = family.rows.iter().map(|row| row.waves).max().unwrap_or(0);
-    let few = most / 4;
-    list("Registers spill", &|row| row.spilled_vgprs + row.spilled_sgprs > 0)
-        + &list(&format!("At most {few} waves, a quarter of the most"), &|row| row.waves <= few)
+    let words = Words::of(&family.driver);
+    let spills = |row: &Measured| words.spills.iter().any(|name| row.number(name) > 0);
+    let mut text = list("Registers spill", &spills);
+    if let Some(waves) = words.waves {
+        let few = family.rows.iter().map(|row| row.number(waves)).max().unwrap_or(0) / 4;
+        let what = format!("At most {few} waves, a quarter of the most");
+        text += &list(&what, &|row| row.number(waves) <= few);
+    }
+    text
 }
 
+/// A row per shader, a column per statistic.
 fn table(family: &Family) -> Table {
-    Table::new(HEADS, family.rows.iter().map(cells))
-}
-
-fn cells(row: &Measured) -> Vec<String> {
-    let mut cells = vec![row.name(), row.ratio.map_or("–".to_owned(), |ratio| format!("{ratio:.2}"))];
-    let numbers = [
-        row.inverse_throughput,
-        row.vgprs,
-        row.waves,
-        row.sgprs,
-        row.spilled_vgprs,
-        row.spilled_sgprs,
-        row.scratch,
-        row.instructions,
-        row.branches,
-        row.code_size,
-        row.latency,
-    ];
-    cells.extend(numbers.map(|number| number.to_string()));
-    cells.push(row.seconds.map_or("–".to_owned(), |seconds| format!("{seconds:.1}")));
-    cells
+    let shown = Words::of(&family.driver).shown(family);
+    let heads = shown.iter().map(|(_, head)| head.as_str());
+    let has_ratios = family.rows.iter().any(|row| row.ratio.is_some());
+    let ratio = has_ratios.then_some("ratio");
+    let heads: Vec<&str> =
+        [""].into_iter().chain(ratio).chain(["wave"]).chain(heads).chain(["CPU s"]).collect();
+    let cells = |row: &Measured| {
+        let ratio = row.ratio.map_or("–".to_owned(), |ratio| format!("{ratio:.2}"));
+        let ratio = has_ratios.then_some(ratio);
+        let seconds = row.seconds.map_or("–".to_owned(), |seconds| format!("{seconds:.1}"));
+        let said = shown.iter().map(|(name, _)| row.said.get(name).map_or("–".to_owned(), u64::to_string));
+        let wave = row.subgroup_size.to_string();
+        [row.name()].into_iter().chain(ratio).chain([wave]).chain(said).chain([seconds]).collect()
+    };
+    Table::new(&heads.join(" | "), family.rows.iter().map(cells))
 }

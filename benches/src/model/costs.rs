@@ -101,7 +101,7 @@ impl Costs {
     pub fn new(family: &Family) -> Option<Self> {
         let throughput = |method: &str, path: &str| {
             let row = family.rows.iter().find(|row| row.lights == method && row.level == path)?;
-            Some(row.inverse_throughput as f64)
+            row.said.get("Inverse Throughput").map(|throughput| *throughput as f64)
         };
         // In a loop a light counts so often, by itself once
         let light = |method, [all, one]: [&str; 2]| {

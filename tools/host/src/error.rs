@@ -66,12 +66,6 @@ pub enum HostError {
     /// The device lacks a feature that was asked for.
     #[error("the device lacks the feature {0}: do not ask for it, or choose another device")]
     MissingFeature(&'static str),
-    /// There is no null hardware to compile for ([`crate::null_hardware`]).
-    #[error("the driver offers no null hardware of that family (found: {})", list(found))]
-    NoNullHardware {
-        /// Devices that there are.
-        found: Vec<String>,
-    },
     /// The driver does not say that of a pipeline.
     #[error("the driver's statistics of a pipeline have no \"{0}\": another version of Mesa may")]
     MissingStatistic(&'static str),

@@ -22,6 +22,7 @@
 mod descriptors;
 mod device;
 mod error;
+pub mod families;
 mod frames;
 mod image;
 mod instance;

@@ -1,9 +1,11 @@
-//! The compiler of a real GPU on a machine that has none: Mesa's RADV with null hardware.
+//! The compiler of a real GPU on a machine that has none.
 //!
-//! With `RADV_FORCE_FAMILY` the driver offers a device of that family that compiles pipelines and runs
-//! nothing: a submission to it crashes. [`Compiler`] makes compute pipelines on it and reads what
-//! `VK_KHR_pipeline_executable_properties` says of them. The loader and the driver read the variables when
-//! they start, so a process must be started with them ([`set_environment`]).
+//! A driver that [`crate::families`] names offers a device that compiles pipelines and runs nothing: a
+//! submission to it crashes, or is lost. [`Compiler`] makes compute pipelines on it and reads what
+//! `VK_KHR_pipeline_executable_properties` says of them. The loader and the driver read their variables when
+//! they start, so a process must be started with them ([`Driver::set_environment`]).
+//!
+//! [`Driver::set_environment`]: crate::families::Driver::set_environment
 
 use crate::device::{Candidate, candidates, choose};
 use crate::error::{HostError, NameCall as _};
@@ -11,50 +13,11 @@ use crate::instance::Instance;
 use crate::listing::driver;
 use crate::validation::Validation;
 use ash::vk;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::collections::BTreeMap;
 
-/// Whether a device of that name is null hardware.
+/// Whether a device of that name is RADV's null hardware.
 pub fn is_null_hardware(device: &str) -> bool {
     device.contains("Null hardware")
-}
-
-/// The file by which the Vulkan loader finds RADV: one that `VK_DRIVER_FILES` or `VK_ICD_FILENAMES` names,
-/// else one of the loader's folders, whatever those variables name. `None` where RADV is not installed.
-pub fn driver_file() -> Option<PathBuf> {
-    let named = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].into_iter().filter_map(std::env::var_os);
-    let mut named = named.flat_map(|files| std::env::split_paths(&files).collect::<Vec<_>>());
-    if let Some(file) = named.find(|file| is_radv(file) && file.is_file()) {
-        return Some(file);
-    }
-    let data = std::env::var("XDG_DATA_DIRS").unwrap_or_else(|_| "/usr/local/share:/usr/share".to_owned());
-    let folders =
-        ["/etc"].into_iter().chain(data.split(':')).map(|folder| Path::new(folder).join("vulkan/icd.d"));
-    let entries = folders.filter_map(|folder| std::fs::read_dir(folder).ok()).flatten();
-    let mut files: Vec<PathBuf> =
-        entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|file| is_radv(file)).collect();
-    // Debian names the architecture in the file: the driver of this one comes first
-    files.sort_by_key(|file| (!file.to_string_lossy().contains(std::env::consts::ARCH), file.clone()));
-    files.into_iter().next()
-}
-
-fn is_radv(file: &Path) -> bool {
-    file.file_name().is_some_and(|name| name.to_string_lossy().starts_with("radeon_icd"))
-}
-
-/// Lets a process see nothing but null hardware of `family` (`navi21`, `vega10`), by the driver that
-/// [`driver_file`] found.
-pub fn set_environment(command: &mut Command, driver: &Path, family: &str) {
-    command
-        .env("RADV_FORCE_FAMILY", family)
-        .env("VK_DRIVER_FILES", driver)
-        .env("VK_ICD_FILENAMES", driver)
-        .env("MESA_SHADER_CACHE_DISABLE", "true")
-        .env("MESA_GLSL_CACHE_DISABLE", "true");
-    // What would change the driver's list of devices, or what its compiler makes
-    for name in ["VK_ADD_DRIVER_FILES", "VK_INSTANCE_LAYERS", "RADV_DEBUG", "RADV_PERFTEST", "ACO_DEBUG"] {
-        command.env_remove(name);
-    }
 }
 
 /// A compute shader, as a pipeline is made of it.
@@ -71,44 +34,13 @@ pub struct ComputeShader {
     pub push_constant_size: u32,
 }
 
-/// What the compiler says of a shader. Nothing ran.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Statistics {
-    /// Invocations a wave.
-    pub subgroup_size: u32,
-    /// Vector registers an invocation.
-    pub vgprs: u64,
-    /// Scalar registers a wave.
-    pub sgprs: u64,
-    /// Vector registers that did not fit and went to memory.
-    pub spilled_vgprs: u64,
-    /// Scalar registers that did not fit and went to lanes of vector registers.
-    pub spilled_sgprs: u64,
-    /// Memory of its own a wave, in bytes: spills, and arrays that are indexed dynamically.
-    pub scratch: u64,
-    /// How many waves a SIMD holds at a time.
-    pub waves: u64,
-    /// Instructions.
-    pub instructions: u64,
-    /// Branches among them.
-    pub branches: u64,
-    /// Machine code in bytes.
-    pub code_size: u64,
-    /// The compiler's estimate of the cycles from a wave's start to its end.
-    pub latency: u64,
-    /// The compiler's estimate of the cycles that a wave keeps a SIMD's units busy.
-    pub inverse_throughput: u64,
-    /// Processor time that making the pipeline took, in seconds; `None` where the system does not tell.
-    pub seconds: Option<f64>,
-}
-
 /// What a driver says of a shader, in its own words.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Said {
     /// Invocations a wave.
     pub subgroup_size: u32,
-    /// Names with values, in the driver's order.
-    pub numbers: Vec<(String, u64)>,
+    /// Values by the driver's names.
+    pub numbers: BTreeMap<String, u64>,
     /// Processor time that making the pipeline took, in seconds; `None` where the system does not tell.
     pub seconds: Option<f64>,
 }
@@ -124,19 +56,16 @@ pub struct Compiler {
 }
 
 impl Compiler {
-    /// Opens the null hardware that [`set_environment`] lets this process see.
+    /// Opens the one device that the process's environment lets it see.
     ///
     /// # Errors
-    /// [`HostError::NoNullHardware`] where there is none, [`HostError::MissingFeature`] where it gives no
+    /// [`HostError::NoDevice`] where there is none, [`HostError::MissingFeature`] where it gives no
     /// statistics.
     pub fn new() -> Result<Self, HostError> {
         let instance = Instance::new(Validation::Off)?;
         let found = candidates(&instance, vk::QueueFlags::COMPUTE, None)?;
-        let names = found.iter().map(|one| one.name.clone()).collect();
-        let Some(null) = found.into_iter().find(|one| is_null_hardware(&one.name)) else {
-            return Err(HostError::NoNullHardware { found: names });
-        };
-        Self::of(instance, null)
+        let found = found.into_iter().next().ok_or_else(|| HostError::NoDevice { found: vec![] })?;
+        Self::of(instance, found)
     }
 
     /// Opens the device that is asked for as [`crate::HostOptions::device`] does.
@@ -217,34 +146,6 @@ impl Compiler {
         };
         let numbers = said.iter().filter_map(|one| Some((name(one), value(one)?))).collect();
         Ok(Said { subgroup_size, numbers, seconds })
-    }
-
-    /// What RADV says of a shader.
-    ///
-    /// # Errors
-    /// As [`Self::said`], and [`HostError::MissingStatistic`] where the driver does not say all of
-    /// [`Statistics`].
-    pub fn statistics(&self, shader: &ComputeShader) -> Result<Statistics, HostError> {
-        let Said { subgroup_size, numbers, seconds } = self.said(shader)?;
-        let number = |name: &'static str| {
-            let one = numbers.iter().find(|(said, _)| said == name);
-            one.map(|(_, value)| *value).ok_or(HostError::MissingStatistic(name))
-        };
-        Ok(Statistics {
-            subgroup_size,
-            vgprs: number("VGPRs")?,
-            sgprs: number("SGPRs")?,
-            spilled_vgprs: number("Spilled VGPRs")?,
-            spilled_sgprs: number("Spilled SGPRs")?,
-            scratch: number("Scratch size")?,
-            waves: number("Subgroups per SIMD")?,
-            instructions: number("Instructions")?,
-            branches: number("Branches")?,
-            code_size: number("Code size")?,
-            latency: number("Latency")?,
-            inverse_throughput: number("Inverse Throughput")?,
-            seconds,
-        })
     }
 }
 

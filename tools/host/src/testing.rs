@@ -12,10 +12,9 @@
 
 use crate::device::{Host, HostOptions};
 use crate::error::HostError;
-use crate::null_hardware::driver_file;
+use crate::families::Driver;
 use crate::validation::{Message, MessageLog, Validation};
 use std::io::Write as _;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A host that fails the test when the validation layer has said anything by the time it is dropped.
@@ -97,17 +96,13 @@ fn test_options(validation: Validation) -> HostOptions {
     HostOptions { device: std::env::var("AREALIGHT_DEVICE").ok(), validation, ..HostOptions::default() }
 }
 
-/// The file of the driver whose compiler a test asks ([`crate::null_hardware`]). `None` where it is not
+/// The driver whose compiler a test asks, for Navi 21 ([`crate::null_hardware`]). `None` where it is not
 /// installed: return then. A test that runs says so by [`ran`].
 ///
 /// # Panics
 /// Where `AREALIGHT_REQUIRE_GPU=1` and it is missing.
-pub fn radv_or_skip() -> Option<PathBuf> {
-    let found = driver_file();
-    if found.is_none() {
-        skip("RADV is not installed: apt-get install mesa-vulkan-drivers");
-    }
-    found
+pub fn radv_or_skip() -> Option<Driver> {
+    Driver::of("navi21").map_err(|lack| skip(&lack.to_string())).ok()
 }
 
 /// Notes that a test had the driver that it needs.

@@ -258,26 +258,4 @@ float arealight_ellipse_form_factor(vec3 center, vec3 axis_u, vec3 axis_v, bool 
     return arealight_guarded_form_factor(two_sided || ellipse.front ? form_factor : 0.0, ellipse.square);
 }
 
-// The mean direction in which the part of an ellipse above the horizon z = 0 is seen, of no particular
-// length; of what arealight_ellipse_form_factor integrates, and of the same arguments. Below the horizon, and
-// for NaN, anything.
-vec3 arealight_ellipse_mean_direction(vec3 center, vec3 axis_u, vec3 axis_v) {
-    ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
-    float root = arealight_confocal_root(ellipse);
-    vec3 up = arealight_ellipse_up(ellipse);
-    vec3 direction;
-    if (ellipse.height >= ellipse.rise || ellipse.height <= -ellipse.rise) {
-        direction = arealight_ellipse_cone_axis(ellipse, root);
-    } else if (arealight_is_small_ellipse(ellipse)) {
-        // Where the cone's parts cancel
-        direction = arealight_ellipse_segment(ellipse, up).middle;
-    } else {
-        ArealightCone cone = arealight_ellipse_cone(ellipse, root);
-        vec3 normal = up * cone.frame;
-        vec4 contour = arealight_cone_contour_above_horizon(cone, normal);
-        direction = cone.frame * (contour.xyz + contour.w * normal);
-    }
-    return arealight_ellipse_frame(ellipse) * direction;
-}
-
 #endif

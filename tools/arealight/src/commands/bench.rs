@@ -130,7 +130,7 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
 fn document(path: &Path, markers: Markers, section: &str) -> String {
     let there = std::fs::read_to_string(path).unwrap_or_default();
     replace_section(&there, markers, section).unwrap_or_else(|| {
-        let Markers { begin, end } = markers;
+        let [begin, end] = markers.lines();
         format!("{begin}\n\n{}\n\n{end}\n", section.trim())
     })
 }

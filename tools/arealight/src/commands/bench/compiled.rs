@@ -9,7 +9,6 @@ use crate::output::{self, print};
 use crate::{progress, verdict};
 use arealight_benches::compiled::{Check, Compiled, Row, matching, of_device, rows};
 use arealight_benches::sections::Markers;
-use arealight_engine::host::null_hardware::driver_file;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -17,21 +16,26 @@ use std::process::ExitCode;
 const FILE: &str = "benches/data/compiled.json";
 
 /// What brings everything that is checked in up to date.
-const UPDATE: &str =
-    "arealight bench compiled --family navi21,vega10,gfx1100 --update --markdown docs/data/gpu.md";
+const UPDATE: &str = "arealight bench compiled --family all --update --markdown docs/data/gpu.md";
+
+/// The families that are checked in.
+const FAMILIES: [&str; 6] = ["navi21", "vega10", "gfx1100", "tgl", "dg2", "a660"];
 
 /// Ask a GPU's compiler what it makes of the kernels: registers, waves, instructions, estimated cycles.
 ///
-/// Mesa's driver of Radeon cards (RADV) compiles for any family of them without a card; nothing runs. Each
-/// row is a kernel, a kind of light and a quality level, as a pass hands it to the driver; beside them are
-/// other methods with the same reads. The ratio is that of inverse throughput to the clipless method's in a
-/// kernel of the same form. These are a compiler's statistics, not times: docs/gpu.md explains them.
+/// Mesa's drivers compile for any family of Radeon, and with what tools/compilers.sh builds for Intel's and
+/// Adreno, without a card; nothing runs. Each row is a kernel, a kind of light and a quality level, as a pass
+/// hands it to the driver; beside them are other methods with the same reads. The ratio, of Radeons, is that
+/// of inverse throughput to the clipless method's in a kernel of the same form. These are a compiler's
+/// statistics, not times: docs/gpu.md explains them.
 ///
 /// Exit code 1 if --check finds a spill, or a row that takes more than the file says or that the file lacks;
 /// 6 if the driver is not installed, or is another version than the file's.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Families of GPU, as Mesa names them: navi21, vangogh, navi10, vega10, polaris10, gfx1100 and so on.
+    /// Families of GPU, as Mesa names them: navi21, vangogh, navi10, vega10, polaris10, gfx1100 and so on;
+    /// Intel's skl, tgl, adl or dg2, and Adreno's a630 or a660, where AREALIGHT_COMPILERS names the folder
+    /// that tools/compilers.sh prints. `all` stands for those that are checked in.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "navi21",
         value_parser = family)]
     family: Vec<String>,
@@ -105,33 +109,20 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         output::check(path, None)?;
     }
 
-    let driver = driver_file().ok_or_else(|| {
-        let message = "RADV, Mesa's driver of Radeon cards, is not installed: on Debian, apt-get install \
-        mesa-vulkan-drivers";
-        Failure::NoProgram(message.to_owned())
-    })?;
+    let every = FAMILIES.map(str::to_owned);
+    let families = if arguments.family == ["all"] { &every[..] } else { &arguments.family };
     if arguments.model {
-        let found = driver::compile(&arguments.family, &["--model"], &wanted, &driver)?;
+        let found = driver::compile(families, &["--model"], &wanted)?;
         return model::run(&found, arguments.markdown.as_deref());
     }
     let which: Vec<&str> =
         arguments.only.as_deref().into_iter().flat_map(|pattern| ["--only", pattern]).collect();
-    let found = driver::compile(&arguments.family, &which, &wanted, &driver)?;
+    let found = driver::compile(families, &which, &wanted)?;
 
-    // Write and print
-    if let Some(path) = &arguments.markdown {
-        let tables = format!("Made by `{UPDATE}`.\n\n{}", found.to_markdown());
-        write(path, &document(path, Markers::COMPILED, &tables))?;
-    }
-    // Strings and numbers, with strings for keys, always serialise
-    let json = serde_json::to_string_pretty(&found).unwrap_or_default() + "\n";
-    if let Some(path) = &arguments.save {
-        write(path, &json)?;
-    }
     if let Some(path) = &arguments.update {
         write(path, &found.clone().replacing(older).to_checked_in())?;
     }
-    let printed = print(&if arguments.json { json } else { found.to_text() })?;
+    let printed = write_and_print(arguments, &found)?;
     let Some(file) = file else { return Ok(printed) };
     let check = Check::new(&found, &file, arguments.only.is_none())
         .map_err(|error| Failure::NoProgram(error.to_string()))?;
@@ -148,10 +139,17 @@ fn by_device(arguments: &Arguments, device: &str, wanted: &[Row]) -> Result<Exit
     let found = of_device(Some(device), wanted, &|| progress.inc(1));
     progress.finish_and_clear();
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
+    write_and_print(arguments, &Compiled { families: vec![found] })
+}
+
+/// What is asked for, in files and on the screen.
+fn write_and_print(arguments: &Arguments, found: &Compiled) -> Result<ExitCode, Failure> {
     if let Some(path) = &arguments.markdown {
-        write(path, &found.to_markdown())?;
+        let tables = format!("Made by `{UPDATE}`.\n\n{}", found.to_markdown());
+        write(path, &document(path, Markers::COMPILED, &tables))?;
     }
-    let json = serde_json::to_string_pretty(&found).unwrap_or_default() + "\n";
+    // Strings and numbers, with strings for keys, always serialise
+    let json = serde_json::to_string_pretty(found).unwrap_or_default() + "\n";
     if let Some(path) = &arguments.save {
         write(path, &json)?;
     }

@@ -5,11 +5,11 @@ use crate::output::print;
 use crate::progress;
 use arealight_benches::compiled::{Compiled, Family, Measured, Row, measure};
 use arealight_engine::host::HostError;
-use arealight_engine::host::null_hardware::{Compiler, set_environment};
+use arealight_engine::host::families::Driver;
+use arealight_engine::host::null_hardware::Compiler;
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
 use std::io::{BufRead as _, BufReader, Read as _};
-use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 use std::sync::Mutex;
 
@@ -30,7 +30,7 @@ enum Line {
 pub fn compile_here(rows: &[Row]) -> Result<ExitCode, Failure> {
     let failed = |error: HostError| Failure::Device(error.to_string());
     let compiler = match Compiler::new() {
-        Err(error @ (HostError::NoNullHardware { .. } | HostError::NoDevice { .. })) => {
+        Err(error @ HostError::NoDevice { .. }) => {
             eprintln!("{error}");
             return Ok(ExitCode::from(NO_SUCH_FAMILY));
         }
@@ -49,19 +49,18 @@ fn print_line(line: &Line) -> Result<(), Failure> {
 }
 
 /// Compiles the rows for each family, in processes of their own, which find them by the arguments `which`.
-pub fn compile(
-    families: &[String],
-    which: &[&str],
-    rows: &[Row],
-    driver: &Path,
-) -> Result<Compiled, Failure> {
+pub fn compile(families: &[String], which: &[&str], rows: &[Row]) -> Result<Compiled, Failure> {
+    let mut drivers = vec![];
+    for family in families {
+        drivers.push(Driver::of(family).map_err(|lack| Failure::NoProgram(lack.to_string()))?);
+    }
     let progress = progress::bar((families.len() * rows.len()) as u64, "rows");
     let mut found: Vec<Option<Result<Family, Failure>>> = families.iter().map(|_| None).collect();
-    let left = Mutex::new(families.iter().zip(&mut found));
+    let left = Mutex::new(families.iter().zip(&drivers).zip(&mut found));
     let work = || {
         loop {
             let next = left.lock().unwrap_or_else(std::sync::PoisonError::into_inner).next();
-            let Some((family, place)) = next else { return };
+            let Some(((family, driver), place)) = next else { return };
             *place = Some(compile_family(family, which, rows.len(), driver, &progress));
         }
     };
@@ -78,14 +77,14 @@ fn compile_family(
     family: &str,
     which: &[&str],
     count: usize,
-    driver: &Path,
+    driver: &Driver,
     progress: &ProgressBar,
 ) -> Result<Family, Failure> {
     let failed = |message: String| Failure::Device(format!("{family}: {message}"));
     let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
     let mut command = Command::new(program);
     command.args(["bench", "compiled", "--on-null-hardware"]).args(which);
-    set_environment(&mut command, driver, family);
+    driver.set_environment(&mut command);
     let started = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let mut child = started.map_err(|error| failed(error.to_string()))?;
 
