@@ -3,9 +3,8 @@
 #
 #   AREALIGHT_COMPILERS="$(tools/compilers.sh)" arealight bench compiled --family tgl,dg2,a660
 #
-# They are of Debian's source of the installed Mesa, since a driver and what stands for its kernel's part must be of one
-# version: for Intel what stands for the kernel alone, for Adreno the driver too, which Debian does not have for PCs. Two
-# minutes on two cores, the first time. For the laboratory only: no part of the product.
+# Of Debian's source of the installed Mesa: a driver and what stands for its kernel must be of one version. For Adreno the
+# driver too, which Debian does not have for PCs. Takes two minutes, the first time. For the laboratory only.
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the command line from a checkout: installs what is missing, builds, and passes the arguments on.
 #
-#   tools/run.sh                          renders the demo scene and says where the picture is (as: tools/run.sh render)
+#   tools/run.sh                          renders scenes/gallery.glb and says where the picture is
 #   tools/run.sh render SCENE.glb -o PICTURE.png
 #   tools/run.sh --help
 set -euo pipefail
@@ -21,6 +21,6 @@ else
 fi
 cargo build --manifest-path "$root/Cargo.toml" --release --locked "${quiet[@]}" -p arealight-cli
 if [[ $# -eq 0 ]]; then
-    set -- render
+    set -- render "$root/scenes/gallery.glb"
 fi
 exec "$binary" "$@"

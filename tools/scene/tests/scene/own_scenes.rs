@@ -33,7 +33,7 @@ const LOBES: Effects = Effects::DIFFUSE.union(Effects::GLOSSY).union(Effects::CO
 fn every_file_loads_and_is_small() {
     let files = std::fs::read_dir(path("")).unwrap().map(|file| file.unwrap());
     let names: Vec<String> = files.map(|file| file.file_name().into_string().unwrap()).collect();
-    assert_eq!(names.len(), 23);
+    assert_eq!(names.len(), 24);
     for name in names {
         load(&name);
         let size = std::fs::metadata(path(&name)).unwrap().len();
@@ -285,11 +285,12 @@ fn the_studio_has_its_softboxes() {
 }
 
 #[test]
-fn the_interior_has_lamps_of_three_shapes_and_cloth() {
+fn the_interior_and_the_gallery_have_lamps_of_three_shapes() {
     let scene = load("interior.glb");
     assert_eq!(scene.effects(), LOBES | Effects::SHEEN | Effects::SPHERE | Effects::TUBE);
     assert_eq!(scene.lights.iter().filter(|light| light.shape.is_polygonal()).count(), 3);
     assert_eq!(scene.lights.len(), 5);
+    assert_eq!(load("gallery.glb").effects(), LOBES | Effects::TEXTURED | Effects::SPHERE | Effects::TUBE);
 }
 
 #[test]
@@ -320,7 +321,7 @@ fn the_product_is_coated_and_brushed_under_a_softbox_that_fades() {
 #[test]
 fn each_light_is_one_lamp_s_and_a_lamp_is_what_it_looks_like() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-    for name in ["room", "shapes", "neon", "shop", "studio", "screen"] {
+    for name in ["room", "shapes", "neon", "shop", "studio", "screen", "gallery"] {
         let scene = Scene::load(folder.join(format!("{name}.glb"))).unwrap();
         let mut lights: Vec<usize> = scene.lamps.iter().flat_map(|lamp| lamp.lights.clone()).collect();
         lights.sort_unstable();

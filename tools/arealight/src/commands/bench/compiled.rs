@@ -34,8 +34,8 @@ const FAMILIES: [&str; 6] = ["navi21", "vega10", "gfx1100", "tgl", "dg2", "a660"
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Families of GPU, as Mesa names them: navi21, vangogh, navi10, vega10, polaris10, gfx1100 and so on;
-    /// Intel's skl, tgl, adl or dg2, and Adreno's a630 or a660, where AREALIGHT_COMPILERS names the folder
-    /// that tools/compilers.sh prints. `all` stands for those that are checked in.
+    /// where `AREALIGHT_COMPILERS` is the folder that tools/compilers.sh prints, Intel's skl, tgl, adl or dg2
+    /// and Adreno's a630 or a660. `all` stands for those that are checked in.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "navi21",
         value_parser = family)]
     family: Vec<String>,
