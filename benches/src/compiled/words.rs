@@ -30,9 +30,9 @@ const KNOWN: [Words; 3] = [
         waves: Some("Subgroups per SIMD"),
         spills: &["Spilled VGPRs", "Spilled SGPRs"],
         held: &[("VGPRs", 0.0), ("Inverse Throughput", TOLERANCE)],
-        shown: "Inverse Throughput=inverse throughput | VGPRs | Subgroups per SIMD=waves | SGPRs | Spilled VGPRs=spilled \
-            VGPRs | Spilled SGPRs=spilled SGPRs | Scratch size=scratch | Instructions=instructions | \
-            Branches=branches | Code size=bytes | Latency=latency",
+        shown: "Inverse Throughput=inverse throughput | VGPRs | Subgroups per SIMD=waves | SGPRs | \
+            Spilled VGPRs=spilled VGPRs | Spilled SGPRs=spilled SGPRs | Scratch size=scratch | \
+            Instructions=instructions | Branches=branches | Code size=bytes | Latency=latency",
     },
     Words {
         driver: "Intel open-source Mesa driver",
@@ -50,9 +50,9 @@ const KNOWN: [Words; 3] = [
         waves: Some("Max Waves Per Core"),
         spills: &["STP Count"],
         held: &[("Registers used", 0.0), ("Instruction Count", TOLERANCE)],
-        shown: "Registers used=registers | Max Waves Per Core=waves | Instruction Count=instructions | NOPs \
-            Count=waits among them | cat2 instructions=of two | cat3 instructions=of three | cat4 \
-            instructions=special | STP Count=stores | LDP Count=loads of own memory | Code size=bytes",
+        shown: "Registers used=registers | Max Waves Per Core=waves | Instruction Count=instructions | \
+            NOPs Count=waits among them | cat2 instructions=of two | cat3 instructions=of three | \
+            cat4 instructions=special | STP Count=stores | LDP Count=loads of own memory | Code size=bytes",
     },
 ];
 
@@ -60,7 +60,7 @@ const KNOWN: [Words; 3] = [
 const OTHER: Words = Words { driver: "", work: None, waves: None, spills: &[], held: &[], shown: "" };
 
 impl Words {
-    /// The words of a driver, by its name.
+    /// Of a driver, by its name.
     pub fn of(driver: &str) -> &'static Self {
         KNOWN.iter().find(|words| driver.starts_with(words.driver)).unwrap_or(&OTHER)
     }

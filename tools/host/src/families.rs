@@ -46,20 +46,19 @@ impl Driver {
             let file = std::env::var_os(COMPILERS).map(|folder| Path::new(&folder).join(name));
             file.filter(|file| file.is_file()).ok_or_else(|| NoDriver::NotBuilt(family.to_owned()))
         };
-        let preload = |library: &str| Ok(("LD_PRELOAD", built(library)?.display().to_string()));
-        let adreno = family.strip_prefix('a').filter(|chip| chip.chars().all(|one| one.is_ascii_digit()));
+        let shim = |maker: &str| {
+            Ok(("LD_PRELOAD", built(&format!("lib{maker}_noop_drm_shim.so"))?.display().to_string()))
+        };
+        let adreno = family.strip_prefix('a').filter(|chip| chip.parse::<u32>().is_ok());
         Ok(if INTEL.contains(&family) {
             Self {
                 manifest: manifest("intel_icd", "Mesa's driver of Intel's GPUs")?,
-                variables: vec![
-                    ("INTEL_STUB_GPU_PLATFORM", family.to_owned()),
-                    preload("libintel_noop_drm_shim.so")?,
-                ],
+                variables: vec![("INTEL_STUB_GPU_PLATFORM", family.to_owned()), shim("intel")?],
             }
         } else if let Some(chip) = adreno {
             Self {
                 manifest: built("freedreno_icd.json")?,
-                variables: vec![("FD_GPU_ID", chip.to_owned()), preload("libfreedreno_noop_drm_shim.so")?],
+                variables: vec![("FD_GPU_ID", chip.to_owned()), shim("freedreno")?],
             }
         } else {
             Self {
@@ -72,9 +71,9 @@ impl Driver {
     /// Lets a process see nothing but the family.
     pub fn set_environment(&self, command: &mut Command) {
         // What would change the driver's list of devices, or what its compiler makes
-        let others =
-            "VK_ADD_DRIVER_FILES VK_INSTANCE_LAYERS RADV_DEBUG RADV_PERFTEST ACO_DEBUG INTEL_DEBUG TU_DEBUG";
-        for name in others.split(' ').chain(["IR3_SHADER_DEBUG"]) {
+        let debug =
+            ["RADV_DEBUG", "RADV_PERFTEST", "ACO_DEBUG", "INTEL_DEBUG", "TU_DEBUG", "IR3_SHADER_DEBUG"];
+        for name in ["VK_ADD_DRIVER_FILES", "VK_INSTANCE_LAYERS"].iter().chain(&debug) {
             command.env_remove(name);
         }
         command

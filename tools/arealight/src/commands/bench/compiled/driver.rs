@@ -105,8 +105,9 @@ fn compile_family(
         errors.read_to_string(&mut said).map_err(|error| failed(error.to_string()))?;
     }
     let status = child.wait().map_err(|error| failed(error.to_string()))?;
-    // Mesa's driver aborts where it doesn't know a family
-    let is_unknown = status.code() == Some(NO_SUCH_FAMILY.into()) || said.contains("Unknown family");
+    // Mesa's drivers abort where they don't know a family
+    let aborted = said.contains("Unknown family") || said.contains("FD_GPU_ID unrecognized");
+    let is_unknown = status.code() == Some(NO_SUCH_FAMILY.into()) || aborted;
     if is_unknown && rows.is_empty() {
         let message = format!("Mesa knows no family of GPU '{family}' ({})", said.trim());
         return Err(Failure::Argument { argument: "--family", message });
