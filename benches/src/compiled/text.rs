@@ -3,7 +3,6 @@
 use super::words::Words;
 use super::{Compiled, Family, Measured};
 use crate::table::Table;
-use std::fmt::Write as _;
 
 impl Compiled {
     /// The tables for a terminal.
@@ -28,17 +27,13 @@ impl Compiled {
 }
 
 fn heading(family: &Family) -> String {
-    let sizes: std::collections::BTreeSet<u32> = family.rows.iter().map(|row| row.subgroup_size).collect();
-    let sizes: Vec<String> = sizes.iter().map(ToString::to_string).collect();
-    let mut text =
-        format!("{}, {}: waves of {} invocations", family.family, family.driver, sizes.join(" or "));
-    if let Some(seconds) = family.seconds() {
-        let _ = write!(text, "; {} rows compiled in {seconds:.1} s of processor time", family.rows.len());
-    }
-    text
+    let count = family.rows.len();
+    let time =
+        family.seconds().map(|time| format!(": {count} rows compiled in {time:.1} s of processor time"));
+    format!("{}, {}{}", family.family, family.driver, time.unwrap_or_default())
 }
 
-/// Which rows spill, and which leave a SIMD few waves.
+/// Which rows spill, and which leave a SIMD few waves, as far as the driver's words are known.
 fn crowded(family: &Family) -> String {
     let list = |what: &str, is_such: &dyn Fn(&Measured) -> bool| {
         let names: Vec<String> =
@@ -49,7 +44,10 @@ fn crowded(family: &Family) -> String {
     };
     let words = Words::of(&family.driver);
     let spills = |row: &Measured| words.spills.iter().any(|name| row.number(name) > 0);
-    let mut text = list("Registers spill", &spills);
+    let mut text = String::new();
+    if !words.spills.is_empty() {
+        text += &list("Registers spill", &spills);
+    }
     if let Some(waves) = words.waves {
         let few = family.rows.iter().map(|row| row.number(waves)).max().unwrap_or(0) / 4;
         let what = format!("At most {few} waves, a quarter of the most");
@@ -61,7 +59,7 @@ fn crowded(family: &Family) -> String {
 /// A row per shader, a column per statistic.
 fn table(family: &Family) -> Table {
     let shown = Words::of(&family.driver).shown(family);
-    let heads = shown.iter().map(|(_, head)| head.as_str());
+    let heads = shown.iter().map(|(_, head)| *head);
     let has_ratios = family.rows.iter().any(|row| row.ratio.is_some());
     let ratio = has_ratios.then_some("ratio");
     let heads: Vec<&str> =
@@ -70,7 +68,7 @@ fn table(family: &Family) -> Table {
         let ratio = row.ratio.map_or("–".to_owned(), |ratio| format!("{ratio:.2}"));
         let ratio = has_ratios.then_some(ratio);
         let seconds = row.seconds.map_or("–".to_owned(), |seconds| format!("{seconds:.1}"));
-        let said = shown.iter().map(|(name, _)| row.said.get(name).map_or("–".to_owned(), u64::to_string));
+        let said = shown.iter().map(|(name, _)| row.said.get(*name).map_or("–".to_owned(), u64::to_string));
         let wave = row.subgroup_size.to_string();
         [row.name()].into_iter().chain(ratio).chain([wave]).chain(said).chain([seconds]).collect()
     };

@@ -73,19 +73,16 @@ impl Words {
 
     /// What a table shows of a family, with the columns' heads: of a driver that is not known, all that
     /// differs between rows.
-    pub fn shown(&self, family: &Family) -> Vec<(String, String)> {
+    pub fn shown<'a>(&self, family: &'a Family) -> Vec<(&'a str, &'a str)> {
         if !self.shown.is_empty() {
-            let column = |one: &str| {
-                let (name, head) = one.split_once('=').unwrap_or((one, one));
-                (name.to_owned(), head.to_owned())
-            };
-            return self.shown.split(" | ").map(column).collect();
+            return self.shown.split(" | ").map(|one| one.split_once('=').unwrap_or((one, one))).collect();
         }
-        let names: BTreeSet<&String> = family.rows.iter().flat_map(|row| row.said.keys()).collect();
-        let differs = |name: &&String| {
+        let names: BTreeSet<&str> =
+            family.rows.iter().flat_map(|row| row.said.keys()).map(String::as_str).collect();
+        let differs = |name: &&str| {
             let values: BTreeSet<_> = family.rows.iter().map(|row| row.said.get(*name)).collect();
             values.len() > 1
         };
-        names.into_iter().filter(differs).map(|name| (name.clone(), name.clone())).collect()
+        names.into_iter().filter(differs).map(|name| (name, name)).collect()
     }
 }

@@ -18,8 +18,10 @@ const INTEL: [&str; 11] = ["skl", "kbl", "cfl", "icl", "ehl", "tgl", "rkl", "dg1
 pub struct Driver {
     /// The file by which the Vulkan loader finds the driver.
     manifest: PathBuf,
-    /// Names and values that let the driver see this family alone.
-    variables: Vec<(&'static str, String)>,
+    /// The variable that lets it see one family alone, and its value.
+    family: (&'static str, String),
+    /// What stands for the kernel's driver, where it needs that.
+    shim: Option<PathBuf>,
 }
 
 /// Why nothing makes code for a family.
@@ -46,24 +48,24 @@ impl Driver {
             let file = std::env::var_os(COMPILERS).map(|folder| Path::new(&folder).join(name));
             file.filter(|file| file.is_file()).ok_or_else(|| NoDriver::NotBuilt(family.to_owned()))
         };
-        let shim = |maker: &str| {
-            Ok(("LD_PRELOAD", built(&format!("lib{maker}_noop_drm_shim.so"))?.display().to_string()))
-        };
         let adreno = family.strip_prefix('a').filter(|chip| chip.parse::<u32>().is_ok());
         Ok(if INTEL.contains(&family) {
             Self {
                 manifest: manifest("intel_icd", "Mesa's driver of Intel's GPUs")?,
-                variables: vec![("INTEL_STUB_GPU_PLATFORM", family.to_owned()), shim("intel")?],
+                family: ("INTEL_STUB_GPU_PLATFORM", family.to_owned()),
+                shim: Some(built("libintel_noop_drm_shim.so")?),
             }
         } else if let Some(chip) = adreno {
             Self {
                 manifest: built("freedreno_icd.json")?,
-                variables: vec![("FD_GPU_ID", chip.to_owned()), shim("freedreno")?],
+                family: ("FD_GPU_ID", chip.to_owned()),
+                shim: Some(built("libfreedreno_noop_drm_shim.so")?),
             }
         } else {
             Self {
                 manifest: manifest("radeon_icd", "RADV, Mesa's driver of Radeon cards")?,
-                variables: vec![("RADV_FORCE_FAMILY", family.to_owned())],
+                family: ("RADV_FORCE_FAMILY", family.to_owned()),
+                shim: None,
             }
         })
     }
@@ -81,7 +83,13 @@ impl Driver {
             .env("VK_ICD_FILENAMES", &self.manifest)
             .env("MESA_SHADER_CACHE_DISABLE", "true")
             .env("MESA_GLSL_CACHE_DISABLE", "true")
-            .envs(self.variables.iter().map(|(name, value)| (name, value)));
+            .env(self.family.0, &self.family.1)
+            .envs(self.shim.iter().map(|library| ("LD_PRELOAD", library)));
+    }
+
+    /// What the family's devices have in their names, in small letters.
+    pub fn chip(&self) -> &str {
+        &self.family.1
     }
 }
 

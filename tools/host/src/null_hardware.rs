@@ -56,16 +56,19 @@ pub struct Compiler {
 }
 
 impl Compiler {
-    /// Opens the one device that the process's environment lets it see.
+    /// Opens the device that the process's environment lets it see, of a [`Driver::chip`].
+    ///
+    /// [`Driver::chip`]: crate::families::Driver::chip
     ///
     /// # Errors
     /// [`HostError::NoDevice`] where there is none, [`HostError::MissingFeature`] where it gives no
     /// statistics.
-    pub fn new() -> Result<Self, HostError> {
+    pub fn of_chip(chip: &str) -> Result<Self, HostError> {
         let instance = Instance::new(Validation::Off)?;
-        let found = candidates(&instance, vk::QueueFlags::COMPUTE, None)?;
-        let found = found.into_iter().next().ok_or_else(|| HostError::NoDevice { found: vec![] })?;
-        Self::of(instance, found)
+        let all = candidates(&instance, vk::QueueFlags::COMPUTE, None)?;
+        let found = all.iter().map(|one| one.name.clone()).collect();
+        let of_chip = all.into_iter().find(|one| one.name.to_lowercase().contains(chip));
+        Self::of(instance, of_chip.ok_or(HostError::NoDevice { found })?)
     }
 
     /// Opens the device that is asked for as [`crate::HostOptions::device`] does.

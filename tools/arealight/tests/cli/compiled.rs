@@ -170,6 +170,11 @@ fn null_hardware_is_listed_and_never_used() {
         driver.set_environment(&mut command);
         command.output().unwrap()
     };
+    // Its name says which chip it is; another's statistics are not taken for it
+    for (chip, code) in [("navi21", 0), ("vega10", 2)] {
+        let output = on_null(&["bench", "compiled", "--only", "texture_load", "--on-null-hardware", chip]);
+        assert_eq!(output.status.code(), Some(code), "{}", said(&output));
+    }
     let devices = on_null(&["devices"]);
     assert_eq!(devices.status.code(), Some(4), "{}", said(&devices));
     let text = said(&devices);

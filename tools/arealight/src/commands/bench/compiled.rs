@@ -69,7 +69,7 @@ pub struct Arguments {
     device: Option<String>,
     /// Compile here, where the environment names the driver and the family, and print each row as it is done.
     #[arg(long, hide = true, conflicts_with_all = ["json", "save", "markdown", "check", "update"])]
-    on_null_hardware: bool,
+    on_null_hardware: Option<String>,
 }
 
 /// The name of a family; whether there is one, the driver knows.
@@ -91,12 +91,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         let message = format!("no row's name contains '{pattern}'; there are:\n{}", names());
         return Err(Failure::Argument { argument: "--only", message });
     }
-    if arguments.on_null_hardware {
-        return driver::compile_here(&wanted);
-    }
-
-    if let Some(device) = &arguments.device {
-        return by_device(arguments, device, &wanted);
+    if let Some(chip) = &arguments.on_null_hardware {
+        return driver::compile_here(chip, &wanted);
     }
 
     // Look at every file before the work
@@ -117,12 +113,24 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     let which: Vec<&str> =
         arguments.only.as_deref().into_iter().flat_map(|pattern| ["--only", pattern]).collect();
-    let found = driver::compile(families, &which, &wanted)?;
+    let found = match &arguments.device {
+        Some(device) => by_device(device, &wanted)?,
+        None => driver::compile(families, &which, &wanted)?,
+    };
 
+    // Write and print
+    if let Some(path) = &arguments.markdown {
+        write(path, &document(path, Markers::COMPILED, &found.to_markdown()))?;
+    }
+    // Strings and numbers, with strings for keys, always serialise
+    let json = serde_json::to_string_pretty(&found).unwrap_or_default() + "\n";
+    if let Some(path) = &arguments.save {
+        write(path, &json)?;
+    }
     if let Some(path) = &arguments.update {
         write(path, &found.clone().replacing(older).to_checked_in())?;
     }
-    let printed = write_and_print(arguments, &found)?;
+    let printed = print(&if arguments.json { json } else { found.to_text() })?;
     let Some(file) = file else { return Ok(printed) };
     let check = Check::new(&found, &file, arguments.only.is_none())
         .map_err(|error| Failure::NoProgram(error.to_string()))?;
@@ -131,29 +139,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 }
 
 /// The rows by a device's own driver.
-fn by_device(arguments: &Arguments, device: &str, wanted: &[Row]) -> Result<ExitCode, Failure> {
-    for path in [&arguments.save, &arguments.markdown].into_iter().flatten() {
-        output::check(path, None)?;
-    }
+fn by_device(device: &str, wanted: &[Row]) -> Result<Compiled, Failure> {
     let progress = progress::bar(wanted.len() as u64, "rows");
     let found = of_device(Some(device), wanted, &|| progress.inc(1));
     progress.finish_and_clear();
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
-    write_and_print(arguments, &Compiled { families: vec![found] })
-}
-
-/// What is asked for, in files and on the screen.
-fn write_and_print(arguments: &Arguments, found: &Compiled) -> Result<ExitCode, Failure> {
-    if let Some(path) = &arguments.markdown {
-        let tables = format!("Made by `{UPDATE}`.\n\n{}", found.to_markdown());
-        write(path, &document(path, Markers::COMPILED, &tables))?;
-    }
-    // Strings and numbers, with strings for keys, always serialise
-    let json = serde_json::to_string_pretty(found).unwrap_or_default() + "\n";
-    if let Some(path) = &arguments.save {
-        write(path, &json)?;
-    }
-    print(&if arguments.json { json } else { found.to_text() })
+    Ok(Compiled { families: vec![found] })
 }
 
 /// The rows' names, a line each.

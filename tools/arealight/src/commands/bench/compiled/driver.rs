@@ -27,9 +27,9 @@ enum Line {
 }
 
 /// Compiles the rows on this process's null hardware.
-pub fn compile_here(rows: &[Row]) -> Result<ExitCode, Failure> {
+pub fn compile_here(chip: &str, rows: &[Row]) -> Result<ExitCode, Failure> {
     let failed = |error: HostError| Failure::Device(error.to_string());
-    let compiler = match Compiler::new() {
+    let compiler = match Compiler::of_chip(chip) {
         Err(error @ HostError::NoDevice { .. }) => {
             eprintln!("{error}");
             return Ok(ExitCode::from(NO_SUCH_FAMILY));
@@ -50,10 +50,8 @@ fn print_line(line: &Line) -> Result<(), Failure> {
 
 /// Compiles the rows for each family, in processes of their own, which find them by the arguments `which`.
 pub fn compile(families: &[String], which: &[&str], rows: &[Row]) -> Result<Compiled, Failure> {
-    let mut drivers = vec![];
-    for family in families {
-        drivers.push(Driver::of(family).map_err(|lack| Failure::NoProgram(lack.to_string()))?);
-    }
+    let drivers = families.iter().map(|family| Driver::of(family)).collect::<Result<Vec<_>, _>>();
+    let drivers = drivers.map_err(|lack| Failure::NoProgram(lack.to_string()))?;
     let progress = progress::bar((families.len() * rows.len()) as u64, "rows");
     let mut found: Vec<Option<Result<Family, Failure>>> = families.iter().map(|_| None).collect();
     let left = Mutex::new(families.iter().zip(&drivers).zip(&mut found));
@@ -83,7 +81,7 @@ fn compile_family(
     let failed = |message: String| Failure::Device(format!("{family}: {message}"));
     let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
     let mut command = Command::new(program);
-    command.args(["bench", "compiled", "--on-null-hardware"]).args(which);
+    command.args(["bench", "compiled", "--on-null-hardware", driver.chip()]).args(which);
     driver.set_environment(&mut command);
     let started = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let mut child = started.map_err(|error| failed(error.to_string()))?;
