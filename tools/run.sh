@@ -21,6 +21,6 @@ else
 fi
 cargo build --manifest-path "$root/Cargo.toml" --release --locked "${quiet[@]}" -p arealight-cli
 if [[ $# -eq 0 ]]; then
-    set -- render "$root/scenes/gallery.glb"
+    set -- render "$root/scenes/gallery.glb" --shadow-noise 1
 fi
 exec "$binary" "$@"

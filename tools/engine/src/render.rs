@@ -1,5 +1,6 @@
 //! What a camera sees of a scene and its lights.
 
+pub(crate) mod cells;
 pub(crate) mod fog;
 pub(crate) mod shadowed;
 pub(crate) mod tiled;
@@ -18,6 +19,7 @@ use arealight_vk::{Resource, ShadeFrame, ShadeResources};
 use ash::vk;
 use bytemuck::Pod;
 use glam::{DVec3, Vec3, Vec4};
+use std::rc::Rc;
 use std::time::Duration;
 
 /// What the kernels call the buffers of a scene.
@@ -60,14 +62,19 @@ pub struct SceneRenderer<'a> {
     size: [u32; 2],
     camera: VisibilityConstants,
     g_buffer: GBuffer,
-    geometry: [Buffer; GEOMETRY.len()],
+    geometry: Rc<[Buffer; GEOMETRY.len()]>,
     has_alpha: (u32, u32),
-    light_buffer: Buffer,
-    vertex_buffer: Buffer,
-    shape_buffer: Buffer,
+    light_buffers: Rc<LightBuffers>,
     sampling: LightSampling,
     most_pairs: u64,
     shown: bool,
+}
+
+/// What lights are packed into.
+struct LightBuffers {
+    lights: Buffer,
+    vertices: Buffer,
+    shapes: Buffer,
 }
 
 impl<'a> SceneRenderer<'a> {
@@ -98,11 +105,13 @@ impl<'a> SceneRenderer<'a> {
             size,
             camera,
             g_buffer: GBuffer::new(engine, size)?,
-            geometry,
+            geometry: Rc::new(geometry),
             has_alpha: (HAS_ALPHA, scene.has_alpha().into()),
-            light_buffer: engine.storage("lights", &packed.lights)?,
-            vertex_buffer: engine.storage("light vertices", &packed.vertices)?,
-            shape_buffer: engine.storage("shapes", &packed.shapes)?,
+            light_buffers: Rc::new(LightBuffers {
+                lights: engine.storage("lights", &packed.lights)?,
+                vertices: engine.storage("light vertices", &packed.vertices)?,
+                shapes: engine.storage("shapes", &packed.shapes)?,
+            }),
             sampling: LightSampling::new(lights, &packed),
             most_pairs: PAIRS_PER_SUBMISSION,
             shown: false,
@@ -304,9 +313,9 @@ impl<'a> SceneRenderer<'a> {
     /// [`EngineError`] names the light that cannot be shaded; where they do not fit, or the device fails.
     pub fn set_lights(&mut self, lights: &[Light], origin: DVec3) -> Result<(), EngineError> {
         let packed = PackedLights::new(lights, origin)?;
-        self.light_buffer.upload(&packed.lights)?;
-        self.vertex_buffer.upload(&packed.vertices)?;
-        self.shape_buffer.upload(&packed.shapes)?;
+        self.light_buffers.lights.upload(&packed.lights)?;
+        self.light_buffers.vertices.upload(&packed.vertices)?;
+        self.light_buffers.shapes.upload(&packed.shapes)?;
         self.lights = packed.summary();
         self.sampling = LightSampling::new(lights, &packed);
         Ok(())
@@ -343,11 +352,11 @@ impl<'a> SceneRenderer<'a> {
             match binding.name {
                 "table_image" => self.engine.table(),
                 "light_textures" => self.engine.light_textures(),
-                "light_vertices" => buffer(&self.vertex_buffer),
-                "shapes" => buffer(&self.shape_buffer),
+                "light_vertices" => buffer(&self.light_buffers.vertices),
+                "shapes" => buffer(&self.light_buffers.shapes),
                 name => match GEOMETRY.iter().position(|known| *known == name) {
                     Some(index) => buffer(&self.geometry[index]),
-                    None => buffer(&self.light_buffer),
+                    None => buffer(&self.light_buffers.lights),
                 },
             }
         };
@@ -359,15 +368,15 @@ impl<'a> SceneRenderer<'a> {
         let lets_through = surfaces.contains(Effects::TRANSMISSION);
         ShadeResources {
             table: self.engine.table(),
-            lights: Resource::buffer(self.light_buffer.handle()),
-            light_vertices: Resource::buffer(self.vertex_buffer.handle()),
+            lights: Resource::buffer(self.light_buffers.lights.handle()),
+            light_vertices: Resource::buffer(self.light_buffers.vertices.handle()),
             planes: Planes::from_fn(|plane| match plane {
                 Plane::BaseColor if lets_through => Some(self.g_buffer.read_transmitted()),
                 _ => Some(self.g_buffer.read(plane)),
             }),
             radiance: Resource::StorageImage { view: self.g_buffer.radiance.view() },
             light_textures: Some(self.engine.light_textures()),
-            shapes: Some(Resource::buffer(self.shape_buffer.handle())),
+            shapes: Some(Resource::buffer(self.light_buffers.shapes.handle())),
             ..ShadeResources::default()
         }
     }

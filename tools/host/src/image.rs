@@ -263,6 +263,37 @@ impl Image {
         staging.download()
     }
 
+    /// Records that all texels become zeros; the image is ready to be copied to, and of floats.
+    pub fn record_clear(&self, commands: vk::CommandBuffer) {
+        let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+        let (zeros, whole) = (vk::ClearColorValue::default(), [self.whole(self.layers)]);
+        // SAFETY: The commands are being recorded; the image was put into this layout.
+        unsafe { self.host.device().cmd_clear_color_image(commands, self.raw, layout, &zeros, &whole) };
+    }
+
+    /// Records copies of rectangles of another image of the format, each from one corner to another, of a
+    /// size. The images are ready to be copied to and from, and hold the rectangles.
+    pub fn record_copies(&self, commands: vk::CommandBuffer, from: &Self, rectangles: &[[[u32; 2]; 3]]) {
+        let region = |[source, destination, [width, height]]: &[[u32; 2]; 3]| {
+            let offset = |[x, y]: [u32; 2]| vk::Offset3D { x: x as i32, y: y as i32, z: 0 };
+            let layers =
+                vk::ImageSubresourceLayers::default().aspect_mask(aspect(self.format)).layer_count(1);
+            vk::ImageCopy::default()
+                .src_subresource(layers)
+                .dst_subresource(layers)
+                .src_offset(offset(*source))
+                .dst_offset(offset(*destination))
+                .extent(vk::Extent3D { width: *width, height: *height, depth: 1 })
+        };
+        let regions: Vec<_> = rectangles.iter().map(region).collect();
+        let [source, destination] =
+            [vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL];
+        // SAFETY: The commands are being recorded; the images were put into these layouts.
+        unsafe {
+            self.host.device().cmd_copy_image(commands, from.raw, source, self.raw, destination, &regions);
+        }
+    }
+
     fn record_upload(&self, commands: vk::CommandBuffer, from: &Buffer) {
         let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
         let (device, region) = (self.host.device(), [self.copy_region()]);

@@ -1,6 +1,7 @@
 //! `arealight render`: a picture of a glTF scene, lit by its polygon lights.
 
 mod bands;
+mod rounds;
 mod shading;
 
 use crate::failure::Failure;
@@ -67,8 +68,8 @@ pub struct Arguments {
     /// a sample; off with --tiles]
     #[arg(long, value_name = "LEVEL", conflicts_with = "tiles")]
     shadows: Option<Shadows>,
-    /// Go on with rounds of shadow rays until their noise, in levels of 255 as the screen shows the means of
-    /// 4 x 4 pixels, is below LEVELS; at most 64 rounds [default: one round]
+    /// Go on with shadow rays where they are noisy, until the noise of each part of the picture, in levels of
+    /// 255 as the screen shows the means of 4 x 4 pixels, is below LEVELS; at most 64 rounds [default: one]
     #[arg(long, value_name = "LEVELS", value_parser = parse_levels,
         conflicts_with_all = ["tiles", "reference"])]
     shadow_noise: Option<f64>,
@@ -145,6 +146,10 @@ impl Arguments {
 
     fn shadow_level(&self) -> Shadows {
         self.shadows.unwrap_or_else(|| Shadows::for_samples(self.supersample * self.supersample))
+    }
+
+    fn casts_shadows(&self) -> bool {
+        self.shadow_level() != Shadows::Off
     }
 
     fn scene_name(&self) -> PathBuf {
@@ -348,7 +353,7 @@ impl Summary<'_> {
             milliseconds(outcome.shading)
         ));
         lines.push(format!("         {}, by the clock on the wall", phases.to_text()));
-        if let Some(text) = outcome.rounds_text(arguments.shadow_level(), arguments.supersample.pow(2)) {
+        if let Some(text) = outcome.rays_text(arguments.supersample.pow(2)) {
             lines.push(text);
         }
         if let Some(fog) = outcome.fog {
@@ -381,6 +386,7 @@ impl Summary<'_> {
             .iter()
             .map(|one| json!({ "effect": one.effect.to_string(), "reason": one.reason }))
             .collect();
+        let rays = outcome.rays(arguments.supersample.pow(2));
         let summary = json!({
             "scene": arguments.scene_name(),
             "triangles": scene.triangles.len(),
@@ -398,7 +404,8 @@ impl Summary<'_> {
                     .map(|(class, count)| (class.name(), count)).collect::<BTreeMap<_, _>>(),
                 "lights_per_tile": tiles.lights_per_tile(),
             })),
-            "shadow_rays": outcome.rays(arguments.shadow_level(), arguments.supersample.pow(2)),
+            "shadow_rays": rays.map(|[_, mean]| mean),
+            "shadow_rays_most": rays.map(|[most, _]| most),
             "shadow_noise": outcome.noise,
             "fog_seconds": seconds(outcome.fog),
             "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },

@@ -338,7 +338,8 @@ impl<'a> Viewer<'a> {
         if self.shadowed.as_ref().is_none_or(|(of, _)| *of != level) {
             let (quality, surfaces) = (level.quality(), self.surfaces());
             let options = ShadeOptions { quality, surfaces, shadow_rays, ..ShadeOptions::default() };
-            let views = self.renderer.shadowed_passes(&self.buffers, options, filter)?;
+            let blockers = self.renderer.blockers(&self.buffers)?;
+            let views = self.renderer.shadowed_passes(&blockers, options, filter)?;
             self.shadowed = Some((level, views));
         }
         let views = self.shadowed.as_ref().map_or(&[][..], |(_, views)| views);

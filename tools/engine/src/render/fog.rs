@@ -1,15 +1,16 @@
 //! A medium before what was shaded, by froxels and by Monte Carlo.
 
-use super::shadowed::blockers;
-use crate::host::{Buffer, DescriptorPool, Image, ImageDescription, Usage};
+use super::shadowed::BlockerBuffers;
+use crate::host::{DescriptorPool, Image, ImageDescription, Usage};
 use crate::{EngineError, Kept, SceneRenderer};
 use arealight::plan::MediumOptions;
 use arealight_scene::{Camera, Scene, SceneBuffers, SceneFog};
 use arealight_tool_kernels::gpu::MediumReferenceConstants;
 use arealight_tool_kernels::kernels::{REFERENCE_MEDIUM, SHADOWS};
-use arealight_vk::{BlockerResources, MediumFrame, MediumPass, MediumPassInfo, MediumResources, Resource};
+use arealight_vk::{MediumFrame, MediumPass, MediumPassInfo, MediumResources, Resource};
 use ash::vk;
 use glam::Vec3;
+use std::rc::Rc;
 use std::time::Duration;
 
 /// An even medium.
@@ -49,7 +50,7 @@ pub struct FogView {
     volume: Image,
     set: vk::DescriptorSet,
     _pool: DescriptorPool,
-    _blockers: [Buffer; 2],
+    _blockers: Rc<BlockerBuffers>,
     pass: Kept<MediumPass>,
 }
 
@@ -77,14 +78,12 @@ impl SceneRenderer<'_> {
         let (extent, format) = ([width, height], MediumPass::FORMAT);
         let volume =
             host.volume(&ImageDescription { name: "froxels", extent, layers: 1, format, usage }, depth)?;
-        let blockers = blockers(scene)?;
-        let buffers = [
-            engine.storage("blocker nodes", &blockers.nodes)?,
-            engine.storage("blocker triangles", &blockers.triangles)?,
-        ];
-        let [nodes, triangles] = buffers.each_ref().map(|buffer| Resource::buffer(buffer.handle()));
-        let blockers = Some(BlockerResources { nodes, triangles });
-        let resources = MediumResources { froxels: Resource::stored(volume.view()), medium, blockers };
+        let blockers = self.blockers(scene)?;
+        let resources = MediumResources {
+            froxels: Resource::stored(volume.view()),
+            medium,
+            blockers: Some(blockers.resources()),
+        };
         let pool = host.descriptor_pool(1, &pass.pool_sizes(1))?;
         // SAFETY: The layout is the pass's; the set is new, and the resources live until submissions were
         // waited for.
@@ -94,7 +93,7 @@ impl SceneRenderer<'_> {
             set
         };
         pass.prepare(self.lights)?;
-        Ok(FogView { froxels, volume, set, _pool: pool, _blockers: buffers, pass })
+        Ok(FogView { froxels, volume, set, _pool: pool, _blockers: blockers, pass })
     }
 
     /// Puts a fog before the picture, with random numbers of `seed`.

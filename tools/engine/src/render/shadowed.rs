@@ -13,7 +13,27 @@ use arealight_vk::{
 };
 use ash::vk;
 use glam::{Vec3, Vec4};
+use std::rc::Rc;
 use std::time::Duration;
+
+/// What of a scene blocks light, on the device: of every view of it.
+pub struct BlockerBuffers {
+    nodes: Buffer,
+    triangles: Buffer,
+    /// Whether some of it is cut out.
+    is_masked: bool,
+}
+
+impl BlockerBuffers {
+    pub(super) fn resources(&self) -> BlockerResources {
+        // doc: blockers
+        BlockerResources {
+            nodes: Resource::buffer(self.nodes.handle()), // of Blockers::new
+            triangles: Resource::buffer(self.triangles.handle()),
+        }
+        // doc end
+    }
+}
 
 /// What shading a view with shadows needs: passes, images, and the scene's blockers.
 pub struct ShadowedView {
@@ -26,7 +46,7 @@ pub struct ShadowedView {
     shadows: Image,
     picks: Buffer,
     history: Buffer,
-    blockers: [Buffer; 2],
+    blockers: Rc<BlockerBuffers>,
     /// Set 1, where blockers are cut out.
     masks: Option<OwnSet>,
 }
@@ -57,8 +77,8 @@ impl ShadowedView {
     /// [`EngineError`] where they are not finite, do not fit, or the device fails.
     pub fn set_blockers(&self, triangles: &[[Vec3; 3]]) -> Result<(), EngineError> {
         let blockers = Blockers::new(triangles).map_err(BufferError::from)?;
-        self.blockers[0].upload(&blockers.nodes)?;
-        self.blockers[1].upload(&blockers.triangles)?;
+        self.blockers.nodes.upload(&blockers.nodes)?;
+        self.blockers.triangles.upload(&blockers.triangles)?;
         Ok(())
     }
 
@@ -79,7 +99,7 @@ impl ShadowedView {
 
 /// What of a scene blocks light: every triangle but those of lamps, which would hide the lights that they
 /// are. Those that are not all there have as their number one more than their index in the scene.
-pub(super) fn blockers(scene: &SceneBuffers) -> Result<Blockers, BufferError> {
+fn blockers(scene: &SceneBuffers) -> Result<Blockers, BufferError> {
     let numbered = (1..).zip(&scene.triangles);
     let shown: Vec<_> = numbered.filter(|(_, triangle)| triangle.flags & GpuTriangle::LAMP == 0).collect();
     let vertices = |(_, t): &(u32, &GpuTriangle)| [t.p0, t.p1, t.p2].map(Vec3::from_array);
@@ -91,6 +111,19 @@ pub(super) fn blockers(scene: &SceneBuffers) -> Result<Blockers, BufferError> {
 }
 
 impl SceneRenderer<'_> {
+    /// What blocks light in a scene.
+    ///
+    /// # Errors
+    /// [`EngineError`] where it does not fit the device, or the device fails.
+    pub fn blockers(&self, scene: &SceneBuffers) -> Result<Rc<BlockerBuffers>, EngineError> {
+        let blockers = blockers(scene)?;
+        Ok(Rc::new(BlockerBuffers {
+            nodes: self.engine.storage("blocker nodes", &blockers.nodes)?,
+            triangles: self.engine.storage("blocker triangles", &blockers.triangles)?,
+            is_masked: scene.has_alpha(),
+        }))
+    }
+
     /// Makes what shading this view of `scene` with shadows needs. `options` have shadow rays; radiance is
     /// added to the image of the view.
     ///
@@ -100,14 +133,22 @@ impl SceneRenderer<'_> {
         &self,
         scene: &SceneBuffers,
         options: ShadeOptions,
+        of: (ShadowFilter, ShadowHistory),
+    ) -> Result<ShadowedView, EngineError> {
+        self.shadowed_by(&self.blockers(scene)?, options, of)
+    }
+
+    fn shadowed_by(
+        &self,
+        blockers: &Rc<BlockerBuffers>,
+        options: ShadeOptions,
         (filter, history): (ShadowFilter, ShadowHistory),
     ) -> Result<ShadowedView, EngineError> {
         let (engine, host) = (self.engine, self.engine.host());
         let options = self.seen(options);
         // Blockers that are cut out are asked for in a module and a set of our own
-        let is_masked = scene.has_alpha();
-        let masks = is_masked.then(|| self.masks()).transpose()?;
-        let module = is_masked.then(|| SHADOW_RAYS_MASKED.words());
+        let masks = blockers.is_masked.then(|| self.masks()).transpose()?;
+        let module = blockers.is_masked.then(|| SHADOW_RAYS_MASKED.words());
         let host_set = masks.as_ref().map(|masks| masks.layout);
         // doc: passes
         // SAFETY: The passes are dropped when no frame uses them, before the device.
@@ -116,8 +157,6 @@ impl SceneRenderer<'_> {
             let info = ShadowPassInfo { options, shadows: output, module, host_set };
             (ShadePass::new(engine.context(), options)?, ShadowPass::new(engine.context(), info)?)
         };
-        // Blockers::new of the scene's triangles; upload its nodes and triangles
-        let blockers = blockers(scene)?;
         // doc end
         let image = |name, format| {
             let usage = vk::ImageUsageFlags::STORAGE;
@@ -134,26 +173,32 @@ impl SceneRenderer<'_> {
             shadows: image("shadows", ShadowPass::SHADOW_FORMAT)?,
             picks: engine.storage("shadow picks", &vec![0_u32; shade.picks_size(self.size) as usize / 4])?,
             history: engine.shadow_history(if history == ShadowHistory::Off { [0; 2] } else { self.size })?,
-            blockers: [
-                engine.storage("blocker nodes", &blockers.nodes)?,
-                engine.storage("blocker triangles", &blockers.triangles)?,
-            ],
+            blockers: Rc::clone(blockers),
             masks,
             shade: Kept::new(host, shade),
             shadow: Kept::new(host, shadow),
         };
-        let resources = self.shadowed_resources(&view, options.surfaces);
-        // doc: sets
-        // SAFETY: The sets are new, and the resources live until submissions were waited for.
-        unsafe {
-            view.shade.write_set(view.sets[0], &resources)?;
-            view.shadow.write_set(view.sets[1], &resources, &self.shadow_resources(&view))?;
-        }
-        // doc end
+        self.bind_shadowed(&view)?;
         let frame = self.shade_frame();
         view.shade.prepare(&frame)?;
         view.shadow.prepare(frame.lights)?;
         Ok(view)
+    }
+
+    /// Makes shadows of another view those of this one, which is no larger.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn bind_shadowed(&self, view: &ShadowedView) -> Result<(), EngineError> {
+        let resources = self.shadowed_resources(view, view.shade.options().surfaces);
+        // doc: sets
+        // SAFETY: No submission uses the sets, and the resources live until submissions were waited for.
+        unsafe {
+            view.shade.write_set(view.sets[0], &resources)?;
+            view.shadow.write_set(view.sets[1], &resources, &self.shadow_resources(view))?;
+        }
+        // doc end
+        Ok(())
     }
 
     /// [`SceneRenderer::shadowed`] of each pass over the options' surfaces, without a history.
@@ -162,12 +207,12 @@ impl SceneRenderer<'_> {
     /// As [`SceneRenderer::shadowed`].
     pub fn shadowed_passes(
         &self,
-        scene: &SceneBuffers,
+        blockers: &Rc<BlockerBuffers>,
         options: ShadeOptions,
         filter: ShadowFilter,
     ) -> Result<Vec<ShadowedView>, EngineError> {
         let of = (filter, ShadowHistory::Off);
-        let view = |surfaces| self.shadowed(scene, ShadeOptions { surfaces, ..options }, of);
+        let view = |surfaces| self.shadowed_by(blockers, ShadeOptions { surfaces, ..options }, of);
         options.surfaces.passes().map(view).collect()
     }
 
@@ -201,10 +246,7 @@ impl SceneRenderer<'_> {
             shadow: Resource::StorageImage { view: view.shadows.view() },
             radiance: Some(Resource::StorageImage { view: self.g_buffer.radiance.view() }),
             history: Some(Resource::buffer(view.history.handle())),
-            blockers: Some(BlockerResources {
-                nodes: Resource::buffer(view.blockers[0].handle()),
-                triangles: Resource::buffer(view.blockers[1].handle()),
-            }),
+            blockers: Some(view.blockers.resources()),
         }
         // doc end
     }

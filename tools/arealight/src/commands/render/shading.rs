@@ -2,16 +2,19 @@
 
 use super::Arguments;
 use super::bands::{Band, MOST_SAMPLES};
-use crate::means::Means;
+use super::rounds::{MOST_ROUNDS, Rounds};
 use crate::picture::{AUTO_LUMINANCE, Exposure, MAX_STOPS, Picture};
 use crate::progress;
 use crate::shadows::Shadows;
-use arealight::plan::{MediumOptions, Output, ShadeOptions, TileOptions};
+use arealight::plan::{MediumOptions, Output, ShadeOptions, ShadowFilter, TileOptions};
 use arealight::{Effects, Light, Quality, reach};
-use arealight_engine::{Engine, EngineError, Fog, Reference, SceneRenderer, ShadowedView, TileCounts};
+use arealight_engine::{
+    BlockerBuffers, Engine, EngineError, Fog, Reference, SceneRenderer, ShadowedView, TileCounts,
+};
 use arealight_scene::{Camera, Scene, SceneBuffers};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use indicatif::ProgressBar;
+use std::rc::Rc;
 use std::time::Duration;
 
 /// What a render took, for the summary.
@@ -23,21 +26,19 @@ pub struct Outcome {
     pub picture: Picture,
     /// The exposure that the picture has.
     pub stops: f32,
-    /// Rounds of shadow rays: of the band that has most.
-    pub rounds: u32,
+    /// Shadow rays a sample: the most that a part of the picture has, and those of all in the mean.
+    rays: [f64; 2],
     /// Their noise in levels of 255, where it is known: of the band that has most.
     pub noise: Option<f64>,
 }
 
-/// The most rounds of shadow rays.
-const MOST_ROUNDS: u32 = 64;
 /// The most bands: rows of the largest picture.
 const MOST_BANDS: u32 = 1 << 16;
 
 impl Outcome {
     /// A picture of `size` without a row yet.
-    fn begin([width, height]: [u32; 2]) -> Self {
-        let picture = Picture { width, height, pixels: vec![] };
+    fn begin(size: [u32; 2]) -> Self {
+        let picture = picture_of(size, vec![]);
         let none = Some(Duration::ZERO);
         Self {
             visibility: none,
@@ -46,7 +47,7 @@ impl Outcome {
             tiles: None,
             picture,
             stops: 0.0,
-            rounds: 0,
+            rays: [0.0; 2],
             noise: None,
         }
     }
@@ -69,20 +70,20 @@ impl Outcome {
         };
     }
 
-    /// The shadow rays that a pixel of so many samples has had.
-    pub fn rays(&self, shadows: Shadows, samples: u32) -> Option<u32> {
-        match shadows {
-            Shadows::Rays(rays, _) if self.rounds > 0 => Some(rays * samples * self.rounds),
-            _ => None,
-        }
+    /// The shadow rays that pixels of so many samples have had, at most and in the mean.
+    pub fn rays(&self, samples: u32) -> Option<[f64; 2]> {
+        (self.rays[0] > 0.0).then(|| self.rays.map(|rays| rays * f64::from(samples)))
     }
 
     /// Those in words, and what noise they left.
-    pub fn rounds_text(&self, shadows: Shadows, samples: u32) -> Option<String> {
-        let rays = self.rays(shadows, samples)?;
+    pub fn rays_text(&self, samples: u32) -> Option<String> {
+        let [most, mean] = self.rays(samples)?;
         Some(match self.noise {
-            None => format!("shadows  {rays} rays a pixel"),
-            Some(noise) => format!("shadows  {rays} rays a pixel; their noise is {noise:.2} levels of 255"),
+            None => format!("shadows  {most} rays a pixel"),
+            Some(noise) => format!(
+                "shadows  {mean:.1} rays a pixel, {most} where they are noisiest; their noise is {noise:.2} levels \
+                 of 255"
+            ),
         })
     }
 }
@@ -121,27 +122,35 @@ pub fn render(
         // Frames of a film, bands and rounds each have seeds of their own, one after the other
         let seed =
             arguments.seed.wrapping_mul(MOST_BANDS).wrapping_add(index as u32).wrapping_mul(MOST_ROUNDS);
-        let shadowed = match arguments.shadow_level() {
+        let shadows = match arguments.shadow_level() {
             Shadows::Rays(shadow_rays, filter) if arguments.reference.is_none() => {
                 let options = ShadeOptions { surfaces, quality, shadow_rays, ..ShadeOptions::default() };
-                renderer.shadowed_passes(&buffers, options, filter)?
+                let blockers = renderer.blockers(&buffers)?;
+                let passes = renderer.shadowed_passes(&blockers, options, filter)?;
+                Some(ViewShadows { blockers, options, filter, passes })
             }
-            _ => vec![],
+            _ => None,
         };
-        let view = View { surfaces, quality, seed, light_count: scene.lights.len(), shadowed };
+        let view = View { surfaces, quality, seed, light_count: scene.lights.len(), shadows };
         let (mut shading, tiles) = shade(&mut renderer, &view, arguments, &bar)?;
         let mut found = colors(&mut renderer)?;
-        if let Some(rounds) = Rounds::of(arguments, in_band[0], most_stops) {
-            let (means, noise, took) = rounds.go_on(&mut renderer, &view, (&lamps, &found), &bar)?;
-            shading = shading.zip(took).map(|(one, more)| one + more);
-            found = lamps.iter().zip(means.mean()).map(|(lamp, mean)| *lamp + mean.as_vec3()).collect();
-            sum.rounds = sum.rounds.max(means.samples());
+        let stops = || match arguments.exposure {
+            Exposure::Stops(stops) => stops,
+            Exposure::Auto => picture_of(in_band, found.clone()).auto_stops(&lamps, most_stops),
+        };
+        if let Some(rounds) = Rounds::of(arguments, &view, in_band, stops) {
+            let converged = rounds.go_on(&renderer, (&lamps, &found), &bar)?;
+            shading = shading.zip(converged.took).map(|(one, more)| one + more);
+            found = converged.picture;
+            let [most, mean] = converged.rays;
+            let part = f64::from(band.kept.end - band.kept.start) / f64::from(size[1]);
+            sum.rays = [sum.rays[0].max(most), sum.rays[1] + mean * part];
             if fog.is_some() {
                 renderer.show(&found)?;
             }
-            sum.noise = sum.noise.into_iter().chain(noise).reduce(f64::max);
-        } else if arguments.reference.is_none() && arguments.shadow_level() != Shadows::Off {
-            sum.rounds = 1;
+            sum.noise = Some(sum.noise.unwrap_or(0.0).max(converged.noise));
+        } else if let Some(shadows) = &view.shadows {
+            sum.rays = [f64::from(shadows.options.shadow_rays); 2];
         }
         if let Some(fog) = &fog {
             let took = add_fog(&mut renderer, &buffers, (fog, in_band, seed), arguments)?;
@@ -159,6 +168,10 @@ pub fn render(
         Exposure::Stops(stops) => stops,
     };
     Ok(sum)
+}
+
+fn picture_of([width, height]: [u32; 2], pixels: Vec<Vec3>) -> Picture {
+    Picture { width, height, pixels }
 }
 
 /// The most stops of [`Exposure::Auto`]: ten more than a white sheet in the scene's middle needs that faces
@@ -184,7 +197,7 @@ fn add_fog(
     (fog, size, seed): (&Fog, [u32; 2], u32),
     arguments: &Arguments,
 ) -> Result<Option<Duration>, EngineError> {
-    let shadows = arguments.shadow_level() != Shadows::Off;
+    let shadows = arguments.casts_shadows();
     if let Some(samples) = arguments.reference {
         let samples = arguments.samples_a_subpixel(samples);
         return renderer.fog_reference(fog, samples, (shadows, seed), |_| ());
@@ -199,84 +212,26 @@ fn add_fog(
 }
 
 /// The radiance of each sample.
-fn colors(renderer: &mut SceneRenderer<'_>) -> Result<Vec<Vec3>, EngineError> {
+pub fn colors(renderer: &mut SceneRenderer<'_>) -> Result<Vec<Vec3>, EngineError> {
     Ok(renderer.radiance()?.into_iter().map(glam::Vec4::truncate).collect())
 }
 
-/// Rounds of shadow rays, each with other random numbers, until little noise is left.
-struct Rounds<'a> {
-    arguments: &'a Arguments,
-    /// The level of noise that is little.
-    most: f64,
-    /// Samples in a row.
-    width: u32,
-    /// As [`most_stops`] has it.
-    most_stops: f32,
-}
-
-impl<'a> Rounds<'a> {
-    /// None where one round is all that is asked for.
-    fn of(arguments: &'a Arguments, width: u32, most_stops: f32) -> Option<Self> {
-        let most = arguments.shadow_noise.filter(|_| arguments.shadow_level() != Shadows::Off)?;
-        Some(Self { arguments, most, width, most_stops })
-    }
-
-    /// Goes on from what `seen` shows after the first round, before which there were `lamps` alone: the means
-    /// of what surfaces reflect, their noise, and the time it took.
-    fn go_on(
-        &self,
-        renderer: &mut SceneRenderer<'_>,
-        view: &View,
-        (lamps, seen): (&[Vec3], &[Vec3]),
-        bar: &ProgressBar,
-    ) -> Result<(Means, Option<f64>, Option<Duration>), EngineError> {
-        let (mut means, mut total) = (Means::new(lamps.len()), Some(Duration::ZERO));
-        let add = |means: &mut Means, before: &[Vec3], after: &[Vec3]| {
-            let apart = before.iter().zip(after).map(|(a, b)| b.as_dvec3() - a.as_dvec3());
-            means.add(&apart.collect::<Vec<DVec3>>(), 1);
-        };
-        add(&mut means, lamps, seen);
-        let mut before = seen.to_vec();
-        let mut noise = self.noise(&means, lamps);
-        while means.samples() < MOST_ROUNDS && noise.is_none_or(|noise| noise > self.most) {
-            // Each half of the means has seeds that follow each other, whose rays complement each other
-            let [half, index] = [means.samples() % 2, means.samples() / 2];
-            let seed = view.seed.wrapping_add(half * (MOST_ROUNDS / 2) + index);
-            let took = view.shade(renderer, seed)?;
-            total = total.zip(took).map(|(total, took)| total + took);
-            // Each round is added to what is there
-            let after = colors(renderer)?;
-            add(&mut means, &before, &after);
-            before = after;
-            noise = self.noise(&means, lamps);
-            bar.set_message(format!("bands, {} rounds of shadow rays", means.samples()));
-        }
-        Ok((means, noise, total))
-    }
-
-    /// The noise of what is known so far.
-    fn noise(&self, means: &Means, lamps: &[Vec3]) -> Option<f64> {
-        let stops = match self.arguments.exposure {
-            Exposure::Stops(stops) => stops,
-            Exposure::Auto => {
-                let pixels: Vec<Vec3> = means.mean().into_iter().map(DVec3::as_vec3).collect();
-                let height = pixels.len() as u32 / self.width.max(1);
-                Picture { width: self.width, height, pixels }.auto_stops(lamps, self.most_stops)
-            }
-        };
-        means.noise(self.width as usize, self.arguments.supersample as usize, stops)
-    }
-}
-
 /// What a band is shaded with.
-struct View {
+pub struct View {
     surfaces: Effects,
     quality: Quality,
     /// The first of the band's seeds.
-    seed: u32,
+    pub seed: u32,
     light_count: usize,
-    /// What shadows are made with, for each pass; without shadows none.
-    shadowed: Vec<ShadowedView>,
+    pub shadows: Option<ViewShadows>,
+}
+
+/// What shadows are made with.
+pub struct ViewShadows {
+    pub blockers: Rc<BlockerBuffers>,
+    pub options: ShadeOptions,
+    pub filter: ShadowFilter,
+    passes: Vec<ShadowedView>,
 }
 
 /// Shades what a renderer sees, as the arguments say.
@@ -288,7 +243,10 @@ fn shade(
 ) -> Result<(Option<Duration>, Option<TileCounts>), EngineError> {
     let View { surfaces, quality, seed, light_count, .. } = *view;
     let took = match (arguments.reference, arguments.tiles) {
-        (None, None) => view.shade(renderer, seed)?,
+        (None, None) => match &view.shadows {
+            None => renderer.shade(surfaces, quality)?,
+            Some(shadows) => renderer.shade_shadowed_passes(&shadows.passes, seed)?,
+        },
         (None, Some(cull_threshold)) => {
             let options = ShadeOptions { quality, output: Output::Add, ..ShadeOptions::default() };
             let tiles = TileOptions { cull_threshold, ..TileOptions::default() };
@@ -305,7 +263,7 @@ fn shade(
         }
         (Some(samples), _) => {
             let samples = arguments.samples_a_subpixel(samples);
-            let shadows = arguments.shadow_level() != Shadows::Off;
+            let shadows = arguments.casts_shadows();
             let coupled = surfaces.contains(Effects::COUPLED);
             let reference = Reference { samples, shadows, coupled, seed };
             let before = bar.position();
@@ -319,13 +277,18 @@ fn shade(
     Ok((took, None))
 }
 
-impl View {
-    /// Shades with shadows, by the random numbers of a seed, or without.
-    fn shade(&self, renderer: &mut SceneRenderer<'_>, seed: u32) -> Result<Option<Duration>, EngineError> {
-        if self.shadowed.is_empty() {
-            return renderer.shade(self.surfaces, self.quality);
+impl ViewShadows {
+    /// Of each sample, whether a ray was hidden.
+    pub fn hidden(&self) -> Result<Vec<bool>, EngineError> {
+        let mut hidden = vec![];
+        for pass in &self.passes {
+            let shadows = pass.shadows()?;
+            hidden.resize(shadows.len(), false);
+            hidden.iter_mut().zip(shadows).for_each(|(hidden, shadow)| {
+                *hidden |= shadow.z > 0.0 && shadow.x < 1.0;
+            });
         }
-        renderer.shade_shadowed_passes(&self.shadowed, seed)
+        Ok(hidden)
     }
 }
 
@@ -333,6 +296,7 @@ impl View {
 mod tests {
     use super::*;
     use arealight::LightShape;
+    use glam::DVec3;
     use std::f64::consts::PI;
 
     #[test]
