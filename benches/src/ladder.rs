@@ -1,7 +1,6 @@
 //! What accuracy costs in time: every quality level on a device, its error against the integral of the true
 //! BRDF and its time, beside Monte Carlo and what others ship.
 
-mod compare;
 mod errors;
 pub(crate) mod frame;
 pub(crate) mod methods;
@@ -13,7 +12,6 @@ mod results;
 mod text;
 pub(crate) mod timing;
 
-pub use compare::{Comparison, compare};
 pub use errors::{Errors, SplitErrors};
 pub use methods::{BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT, SHADE_YARDSTICK};
 pub use names::LevelNames;

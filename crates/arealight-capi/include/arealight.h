@@ -519,6 +519,18 @@ typedef struct ArealightReach {
     double high[3];
 } ArealightReach;
 
+// SPIR-V that the host compiled from the sources of `arealight export`. All zero is the library's own.
+//
+// It is valid SPIR-V of this version's kernel; the layout lives as long as the pass that is made of it.
+typedef struct ArealightModule {
+    // The words.
+    const uint32_t *words;
+    // Their bytes.
+    size_t size;
+    // VkDescriptorSetLayout of set 1, with what the host's own answers read. Else 0.
+    uint64_t host_set_layout;
+} ArealightModule;
+
 // Options fixed when a pass is created. All zero is both lobes at the exact level.
 typedef struct ArealightPassOptions {
     // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL,
@@ -578,6 +590,9 @@ typedef struct ArealightPassOptions {
     uint32_t light_counts;
     // One of AREALIGHT_DESCRIPTORS_*.
     uint32_t descriptors;
+    // `shade.comp` for a G-buffer of the host's: `g_buffer` does not count then, and tiles cannot be had.
+    // Images that it does not declare may be any in ArealightResources.
+    struct ArealightModule module;
 } ArealightPassOptions;
 
 // Options of a medium's pass. All zero: at the middle of each froxel, without shadow rays.
@@ -594,6 +609,8 @@ typedef struct ArealightMediumOptions {
     // 1: froxels that surfaces hide from every pixel are filled, too. 0: they hold nothing, and positions
     // are of the picture's size.
     uint32_t fill_hidden;
+    // `medium_scatter.comp` of the host's, as ArealightShadowOptions.module.
+    struct ArealightModule module;
 } ArealightMediumOptions;
 
 // The resources of a descriptor set.
@@ -792,6 +809,8 @@ typedef struct ArealightShadowOptions {
     uint32_t history;
     // One of AREALIGHT_OUTPUT_*, for ArealightShadowResources.radiance.
     uint32_t output;
+    // `shadow_rays.comp` with the host's own answer to what blocks a ray, such as an acceleration structure.
+    struct ArealightModule module;
 } ArealightShadowOptions;
 
 // The host's resources of a shadow pass beyond those of its shade pass.
@@ -1005,20 +1024,6 @@ enum ArealightResult arealight_medium_pass_create(const struct Arealight *areali
                                                   const struct ArealightMediumOptions *medium,
                                                   struct ArealightMediumPass **out);
 
-// As arealight_medium_pass_create, of a module that the host compiled from `medium_scatter.comp` of
-// `arealight export` with its own answer to what arrives of a light: as
-// arealight_shadow_pass_create_with_module.
-//
-// The host sees to it:
-// As arealight_shadow_pass_create_with_module.
-enum ArealightResult arealight_medium_pass_create_with_module(const struct Arealight *arealight,
-                                                              const struct ArealightPassOptions *options,
-                                                              const struct ArealightMediumOptions *medium,
-                                                              const uint32_t *words,
-                                                              size_t size,
-                                                              uint64_t host_set_layout,
-                                                              struct ArealightMediumPass **out);
-
 // What descriptor sets of the pass are made with.
 //
 // The host sees to it:
@@ -1069,18 +1074,6 @@ enum ArealightResult arealight_medium_pass_destroy(struct ArealightMediumPass *p
 enum ArealightResult arealight_pass_create(const struct Arealight *arealight,
                                            const struct ArealightPassOptions *options,
                                            struct ArealightPass **out);
-
-// As arealight_pass_create, of a module that the host compiled from the sources of `arealight export`, for a
-// G-buffer of its own: `options.g_buffer` does not count then, and tiles cannot be had. `words` is SPIR-V,
-// `size` its bytes. Images that the module does not declare may be any in ArealightResources.
-//
-// The host sees to it:
-// Pointers are null or valid. The module is valid SPIR-V of this version's kernel.
-enum ArealightResult arealight_pass_create_with_module(const struct Arealight *arealight,
-                                                       const struct ArealightPassOptions *options,
-                                                       const uint32_t *words,
-                                                       size_t size,
-                                                       struct ArealightPass **out);
 
 // What descriptor sets of the pass are made with.
 //
@@ -1182,22 +1175,6 @@ enum ArealightResult arealight_shadow_pass_create(const struct Arealight *areali
                                                   const struct ArealightPassOptions *options,
                                                   const struct ArealightShadowOptions *shadows,
                                                   struct ArealightShadowPass **out);
-
-// As arealight_shadow_pass_create, of a module that the host compiled from `shadow_rays.comp` of
-// `arealight export` with its own answer to what blocks a ray, such as an acceleration structure. What that
-// reads is in descriptor set 1, of the VkDescriptorSetLayout `host_set_layout`. `words` is SPIR-V, `size`
-// its bytes.
-//
-// The host sees to it:
-// Pointers are null or valid. The module is valid SPIR-V of this version's kernel; the layout lives as long
-// as the pass.
-enum ArealightResult arealight_shadow_pass_create_with_module(const struct Arealight *arealight,
-                                                              const struct ArealightPassOptions *options,
-                                                              const struct ArealightShadowOptions *shadows,
-                                                              const uint32_t *words,
-                                                              size_t size,
-                                                              uint64_t host_set_layout,
-                                                              struct ArealightShadowPass **out);
 
 // How many bytes ArealightResources.shadow_picks needs, for images of `width` x `height` pixels; 0 for a
 // pass without shadow rays.
@@ -1339,6 +1316,10 @@ enum ArealightResult arealight_textures_destroy(struct ArealightTextures *textur
 #else
 #define AREALIGHT_ASSERT(condition) _Static_assert(condition, #condition)
 #endif
+AREALIGHT_ASSERT(sizeof(ArealightModule) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightModule, words) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightModule, size) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightModule, host_set_layout) == 16);
 AREALIGHT_ASSERT(sizeof(ArealightHost) == 56);
 AREALIGHT_ASSERT(offsetof(ArealightHost, abi_version) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightHost, api_version) == 4);
@@ -1365,7 +1346,7 @@ AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_size) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_buffer) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_offset) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, command_buffer) == 32);
-AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 88);
+AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 112);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, surfaces) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, form_factor) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, horizon) == 8);
@@ -1388,6 +1369,7 @@ AREALIGHT_ASSERT(offsetof(ArealightPassOptions, samples) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, stencil) == 76);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, light_counts) == 80);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, descriptors) == 84);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, module) == 88);
 AREALIGHT_ASSERT(sizeof(ArealightSetLayout) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, layout) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, sampled_images) == 8);
@@ -1483,10 +1465,11 @@ AREALIGHT_ASSERT(sizeof(ArealightTileMemory) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, size) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, usage) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, reserved) == 12);
-AREALIGHT_ASSERT(sizeof(ArealightShadowOptions) == 12);
+AREALIGHT_ASSERT(sizeof(ArealightShadowOptions) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightShadowOptions, filter) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightShadowOptions, history) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightShadowOptions, output) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightShadowOptions, module) == 16);
 AREALIGHT_ASSERT(sizeof(ArealightShadowResources) == 104);
 AREALIGHT_ASSERT(offsetof(ArealightShadowResources, shadow) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightShadowResources, radiance) == 16);
@@ -1498,12 +1481,13 @@ AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, frame) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, host_set) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, origin_shift) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, reserved) == 28);
-AREALIGHT_ASSERT(sizeof(ArealightMediumOptions) == 20);
+AREALIGHT_ASSERT(sizeof(ArealightMediumOptions) == 48);
 AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, shadow_rays) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, samples) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, by_image) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, jitter) == 12);
 AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, fill_hidden) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, module) == 24);
 AREALIGHT_ASSERT(sizeof(ArealightMediumResources) == 80);
 AREALIGHT_ASSERT(offsetof(ArealightMediumResources, froxels) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightMediumResources, medium) == 16);

@@ -3,12 +3,10 @@
 use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
 use crate::options::{level, shade_options};
-use crate::pass::{
-    HostModule, bound, given, host_module, read_frame, read_resources, sampled, set_layout, stored,
-};
+use crate::pass::{bound, given, host_module, read_frame, read_resources, sampled, set_layout, stored};
 use crate::types::{
-    ArealightBuffer, ArealightFrame, ArealightImage, ArealightPassOptions, ArealightResources,
-    ArealightSetLayout,
+    ArealightBuffer, ArealightFrame, ArealightImage, ArealightModule, ArealightPassOptions,
+    ArealightResources, ArealightSetLayout,
 };
 use crate::{arguments, handles};
 use arealight::plan::{MediumOptions, ShadeOptions};
@@ -33,6 +31,8 @@ pub struct ArealightMediumOptions {
     /// 1: froxels that surfaces hide from every pixel are filled, too. 0: they hold nothing, and positions
     /// are of the picture's size.
     pub fill_hidden: u32,
+    /// `medium_scatter.comp` of the host's, as ArealightShadowOptions.module.
+    pub module: ArealightModule,
 }
 
 /// The host's resources of a medium's pass beyond those of its shade pass.
@@ -97,27 +97,7 @@ pub unsafe extern "C" fn arealight_medium_pass_create(
     out: *mut *mut ArealightMediumPass,
 ) -> ArealightResult {
     // SAFETY: the same contract; the pass is the host's to destroy.
-    call(|| unsafe { create(arealight, options, medium, out, || Ok(HostModule::default())) })
-}
-
-/// As arealight_medium_pass_create, of a module that the host compiled from `medium_scatter.comp` of
-/// `arealight export` with its own answer to what arrives of a light: as
-/// arealight_shadow_pass_create_with_module.
-///
-/// # Safety
-/// As arealight_shadow_pass_create_with_module.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn arealight_medium_pass_create_with_module(
-    arealight: *const Arealight,
-    options: *const ArealightPassOptions,
-    medium: *const ArealightMediumOptions,
-    words: *const u32,
-    size: usize,
-    host_set_layout: u64,
-    out: *mut *mut ArealightMediumPass,
-) -> ArealightResult {
-    // SAFETY: the same contract; the pass is the host's to destroy.
-    call(|| unsafe { create(arealight, options, medium, out, || host_module(words, size, host_set_layout)) })
+    call(|| unsafe { create(arealight, options, medium, out) })
 }
 
 /// # Safety
@@ -127,15 +107,15 @@ unsafe fn create(
     options: *const ArealightPassOptions,
     medium: *const ArealightMediumOptions,
     out: *mut *mut ArealightMediumPass,
-    module: impl FnOnce() -> Result<HostModule, Failure>,
 ) -> Result<(), Failure> {
     // SAFETY: the same contract; the host vouches for the module.
     unsafe {
         arguments::write(out, std::ptr::null_mut(), "out")?;
         let arealight = handles::borrow(arealight, "arealight")?;
         let shade = shade_options(arguments::read(options, "options")?)?;
-        let options = medium_options(shade, arguments::read(medium, "medium")?)?;
-        let (module, host_set) = module()?;
+        let medium = arguments::read(medium, "medium")?;
+        let options = medium_options(shade, medium)?;
+        let (module, host_set) = host_module(&medium.module)?;
         let pass = MediumPass::new(arealight.context(), MediumPassInfo { options, module, host_set })?;
         arguments::write(out, handles::give(ArealightMediumPass { pass }), "out")
     }

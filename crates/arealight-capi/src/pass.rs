@@ -8,8 +8,8 @@ use crate::failure::{ArealightResult, Failure, call};
 use crate::lights::read_summary;
 use crate::options::{shade_options, tile_options};
 use crate::types::{
-    ArealightBuffer, ArealightFrame, ArealightImage, ArealightPassOptions, ArealightResources,
-    ArealightSetLayout, ArealightTileMemory, ArealightViewport,
+    ArealightBuffer, ArealightFrame, ArealightImage, ArealightModule, ArealightPassOptions,
+    ArealightResources, ArealightSetLayout, ArealightTileMemory, ArealightViewport,
 };
 use crate::{arguments, handles};
 use arealight::{Plane, Planes};
@@ -43,59 +43,26 @@ pub unsafe extern "C" fn arealight_pass_create(
     out: *mut *mut ArealightPass,
 ) -> ArealightResult {
     // SAFETY: the same contract; the pass is the host's to destroy.
-    call(|| unsafe { create(arealight, options, out, |_| Ok(None)) })
+    call(|| unsafe { create(arealight, options, out) })
 }
 
-/// As arealight_pass_create, of a module that the host compiled from the sources of `arealight export`, for a
-/// G-buffer of its own: `options.g_buffer` does not count then, and tiles cannot be had. `words` is SPIR-V,
-/// `size` its bytes. Images that the module does not declare may be any in ArealightResources.
-///
-/// # Safety
-/// Pointers are null or valid. The module is valid SPIR-V of this version's kernel.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn arealight_pass_create_with_module(
-    arealight: *const Arealight,
-    options: *const ArealightPassOptions,
-    words: *const u32,
-    size: usize,
-    out: *mut *mut ArealightPass,
-) -> ArealightResult {
-    let module = |info: &ShadePassInfo| {
-        if info.tiles.is_some() {
-            return Err(Failure::argument(
-                "options.tile_capacity: must be 0, since tiles are not classified by a G-buffer of the \
-                host's own",
-            ));
-        }
-        // SAFETY: the same contract, here and below.
-        Ok(Some(unsafe { module_words(words, size) }?))
-    };
-    // SAFETY: the same contract; the pass is the host's to destroy.
-    call(|| unsafe { create(arealight, options, out, module) })
-}
-
-/// The words of a module of `size` bytes.
-///
-/// # Safety
-/// The pointer is null or valid.
-unsafe fn module_words(words: *const u32, size: usize) -> Result<Vec<u32>, Failure> {
-    if !size.is_multiple_of(4) {
-        return Err(Failure::argument(format!("size: {size} bytes are no whole words of SPIR-V")));
-    }
-    // SAFETY: the same contract.
-    Ok(unsafe { arguments::array(words, size / 4, "words") }?.to_vec())
-}
-
-/// A module of the host's for rays, and the layout of set 1, which it reads.
+/// A module of the host's, if it has one, and the layout of set 1.
 pub(crate) type HostModule = (Option<Vec<u32>>, Option<vk::DescriptorSetLayout>);
 
 /// # Safety
 /// The pointer is null or valid.
-pub(crate) unsafe fn host_module(words: *const u32, size: usize, layout: u64) -> Result<HostModule, Failure> {
-    arguments::refuse_null([(layout == 0, "host_set_layout")])?;
+pub(crate) unsafe fn host_module(module: &ArealightModule) -> Result<HostModule, Failure> {
+    let ArealightModule { words, size, host_set_layout } = *module;
+    if words.is_null() {
+        return Ok(HostModule::default());
+    }
+    if !size.is_multiple_of(4) {
+        return Err(Failure::argument(format!("module.size: {size} bytes are no whole words of SPIR-V")));
+    }
     // SAFETY: the same contract.
-    let words = unsafe { module_words(words, size) }?;
-    Ok((Some(words), Some(vk::DescriptorSetLayout::from_raw(layout))))
+    let words = unsafe { arguments::array(words, size / 4, "module.words") }?.to_vec();
+    let layout = (host_set_layout != 0).then(|| vk::DescriptorSetLayout::from_raw(host_set_layout));
+    Ok((Some(words), layout))
 }
 
 /// # Safety
@@ -104,7 +71,6 @@ unsafe fn create(
     arealight: *const Arealight,
     options: *const ArealightPassOptions,
     out: *mut *mut ArealightPass,
-    module: impl FnOnce(&ShadePassInfo) -> Result<Option<Vec<u32>>, Failure>,
 ) -> Result<(), Failure> {
     // SAFETY: the same contract, here and below.
     let (arealight, options) = unsafe {
@@ -117,13 +83,21 @@ unsafe fn create(
         AREALIGHT_DESCRIPTORS_PUSHED => Descriptors::Pushed,
         other => return Err(Failure::argument(format!("options.descriptors: {other} must be from 0 to 2"))),
     };
+    // SAFETY: as above.
+    let (module, host_set) = unsafe { host_module(&options.module) }?;
+    let tiles = tile_options(options);
+    if tiles.is_some() && module.is_some() {
+        let why = "must be 0, since tiles are not classified by a G-buffer of the host's own";
+        return Err(Failure::argument(format!("options.tile_capacity: {why}")));
+    }
     let info = ShadePassInfo {
-        tiles: tile_options(options),
+        tiles,
         table_size: arealight.table_size(),
         descriptors,
+        module,
+        host_set,
         ..shade_options(options)?.into()
     };
-    let info = ShadePassInfo { module: module(&info)?, ..info };
     // SAFETY: the host vouches for the module, and says that its device has the extension.
     let pass = unsafe { ShadePass::new(arealight.context(), info) }?;
     // SAFETY: as above.

@@ -4,9 +4,7 @@ use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
 use crate::lights::{check_size, copy};
 use crate::options::{level, shade_options};
-use crate::pass::{
-    ArealightPass, HostModule, bound, given, host_module, read_frame, read_resources, set_layout, stored,
-};
+use crate::pass::{ArealightPass, bound, given, host_module, read_frame, read_resources, set_layout, stored};
 use crate::types::{
     ArealightBlockerArrays, ArealightFrame, ArealightPassOptions, ArealightResources, ArealightSetLayout,
     ArealightShadowFrame, ArealightShadowOptions, ArealightShadowResources,
@@ -128,29 +126,7 @@ pub unsafe extern "C" fn arealight_shadow_pass_create(
     out: *mut *mut ArealightShadowPass,
 ) -> ArealightResult {
     // SAFETY: the same contract; the pass is the host's to destroy.
-    call(|| unsafe { create(arealight, options, shadows, out, || Ok(HostModule::default())) })
-}
-
-/// As arealight_shadow_pass_create, of a module that the host compiled from `shadow_rays.comp` of
-/// `arealight export` with its own answer to what blocks a ray, such as an acceleration structure. What that
-/// reads is in descriptor set 1, of the VkDescriptorSetLayout `host_set_layout`. `words` is SPIR-V, `size`
-/// its bytes.
-///
-/// # Safety
-/// Pointers are null or valid. The module is valid SPIR-V of this version's kernel; the layout lives as long
-/// as the pass.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn arealight_shadow_pass_create_with_module(
-    arealight: *const Arealight,
-    options: *const ArealightPassOptions,
-    shadows: *const ArealightShadowOptions,
-    words: *const u32,
-    size: usize,
-    host_set_layout: u64,
-    out: *mut *mut ArealightShadowPass,
-) -> ArealightResult {
-    // SAFETY: the same contract; the pass is the host's to destroy.
-    call(|| unsafe { create(arealight, options, shadows, out, || host_module(words, size, host_set_layout)) })
+    call(|| unsafe { create(arealight, options, shadows, out) })
 }
 
 /// # Safety
@@ -160,15 +136,15 @@ unsafe fn create(
     options: *const ArealightPassOptions,
     shadows: *const ArealightShadowOptions,
     out: *mut *mut ArealightShadowPass,
-    module: impl FnOnce() -> Result<HostModule, Failure>,
 ) -> Result<(), Failure> {
     // SAFETY: the same contract; the host vouches for the module.
     unsafe {
         arguments::write(out, std::ptr::null_mut(), "out")?;
         let arealight = handles::borrow(arealight, "arealight")?;
         let options = shade_options(arguments::read(options, "options")?)?;
-        let shadows = shadow_options(arguments::read(shadows, "shadows")?)?;
-        let (module, host_set) = module()?;
+        let shadows = arguments::read(shadows, "shadows")?;
+        let (module, host_set) = host_module(&shadows.module)?;
+        let shadows = shadow_options(shadows)?;
         let info = ShadowPassInfo { options, shadows, module, host_set };
         let pass = ShadowPass::new(arealight.context(), info)?;
         arguments::write(out, handles::give(ArealightShadowPass { pass }), "out")
@@ -335,7 +311,7 @@ mod tests {
     fn constants_are_those_of_the_vocabulary() {
         let made = |filter, history| {
             let ShadowOptions { filter, history, .. } =
-                shadow_options(&ArealightShadowOptions { filter, history, output: 0 }).unwrap();
+                shadow_options(&ArealightShadowOptions { filter, history, ..Default::default() }).unwrap();
             (filter, history)
         };
         assert_eq!(

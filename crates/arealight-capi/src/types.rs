@@ -82,6 +82,20 @@ pub struct ArealightUpload {
     pub command_buffer: *mut c_void,
 }
 
+/// SPIR-V that the host compiled from the sources of `arealight export`. All zero is the library's own.
+///
+/// It is valid SPIR-V of this version's kernel; the layout lives as long as the pass that is made of it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ArealightModule {
+    /// The words.
+    pub words: *const u32,
+    /// Their bytes.
+    pub size: usize,
+    /// VkDescriptorSetLayout of set 1, with what the host's own answers read. Else 0.
+    pub host_set_layout: u64,
+}
+
 /// Options fixed when a pass is created. All zero is both lobes at the exact level.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
@@ -143,6 +157,9 @@ pub struct ArealightPassOptions {
     pub light_counts: u32,
     /// One of AREALIGHT_DESCRIPTORS_*.
     pub descriptors: u32,
+    /// `shade.comp` for a G-buffer of the host's: `g_buffer` does not count then, and tiles cannot be had.
+    /// Images that it does not declare may be any in ArealightResources.
+    pub module: ArealightModule,
 }
 
 /// The resources of a descriptor set.
@@ -424,6 +441,8 @@ pub struct ArealightShadowOptions {
     pub history: u32,
     /// One of AREALIGHT_OUTPUT_*, for ArealightShadowResources.radiance.
     pub output: u32,
+    /// `shadow_rays.comp` with the host's own answer to what blocks a ray, such as an acceleration structure.
+    pub module: ArealightModule,
 }
 
 /// The host's resources of a shadow pass beyond those of its shade pass.

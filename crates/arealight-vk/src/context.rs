@@ -1,7 +1,7 @@
 //! The host's device, and the pipeline cache it lends.
 
 use crate::debug_names::DebugNames;
-use crate::error::{Error, VulkanCall};
+use crate::error::Error;
 use crate::limits::{DescriptorLimits, ImageLimits, light_texture_limits};
 use crate::written_sets::WrittenSets;
 use ash::vk;
@@ -111,23 +111,6 @@ impl Context {
     /// The device's function table.
     pub fn device(&self) -> &ash::Device {
         &self.device
-    }
-
-    /// A view of an image.
-    ///
-    /// # Safety
-    /// The image is of this device, and has memory.
-    pub(crate) unsafe fn view(
-        &self,
-        image: vk::Image,
-        kind: vk::ImageViewType,
-        format: vk::Format,
-        range: vk::ImageSubresourceRange,
-    ) -> Result<vk::ImageView, Error> {
-        let info = vk::ImageViewCreateInfo::default().image(image).view_type(kind).format(format);
-        let info = info.subresource_range(range);
-        // SAFETY: the same contract; the device is valid by that of Context::new.
-        unsafe { self.device.create_image_view(&info, None) }.call("vkCreateImageView")
     }
 
     /// A barrier for what a pass's own commands hand on to each other: stages, and what they do.

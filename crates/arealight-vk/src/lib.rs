@@ -50,6 +50,7 @@ mod debug_names;
 mod error;
 mod formats;
 mod frame;
+mod image;
 mod layouts;
 mod light_textures;
 mod limits;

@@ -1,7 +1,8 @@
 //! The lights' textures on the GPU: an array image with a layer for each, and the passes that filter them.
 
-use crate::context::{Context, color_range};
-use crate::error::{Error, VulkanCall};
+use crate::context::Context;
+use crate::error::Error;
+use crate::image::{Image, ImageInfo};
 use crate::limits::{TEXTURE_FORMAT as FORMAT, TEXTURE_USAGE as USAGE};
 use crate::pass::ComputePass;
 use crate::resource::Resource;
@@ -64,9 +65,7 @@ pub struct LightTextures {
     mip: ComputePass,
     /// Its sets are laid out as those of `mip`.
     kernel: ComputePass,
-    image: vk::Image,
-    view: vk::ImageView,
-    level_views: Vec<vk::ImageView>,
+    image: Image,
 }
 
 impl LightTextures {
@@ -92,37 +91,24 @@ impl LightTextures {
         let of_levels = |kernel| unsafe { ComputePass::new(context, kernel, &[]) };
         let (mip, kernel) = (of_levels(&TEXTURE_MIP)?, of_levels(&TEXTURE_KERNEL)?);
         let side = size.side(0);
-        let info = vk::ImageCreateInfo::default()
-            .image_type(vk::ImageType::TYPE_2D)
-            .format(FORMAT)
-            .extent(vk::Extent3D { width: side, height: side, depth: 1 })
-            .mip_levels(size.levels())
-            .array_layers(LAYERS * layers)
-            .samples(vk::SampleCountFlags::TYPE_1)
-            .tiling(vk::ImageTiling::OPTIMAL)
-            .usage(USAGE)
-            .initial_layout(vk::ImageLayout::UNDEFINED);
-        // SAFETY: the device is valid by the contract of Context::new.
-        let image = unsafe { context.device.create_image(&info, None) }.call("vkCreateImage")?;
-        context.names.name(image, "light textures");
-        let view = vk::ImageView::null();
-        Ok(Self {
-            context: context.clone(),
-            size,
-            layers,
-            load,
-            mip,
-            kernel,
-            image,
-            view,
-            level_views: vec![],
-        })
+        let info = ImageInfo {
+            name: "light textures",
+            image_type: vk::ImageType::TYPE_2D,
+            view_type: vk::ImageViewType::TYPE_2D_ARRAY,
+            format: FORMAT,
+            extent: [side, side, 1],
+            levels: size.levels(),
+            layers: LAYERS * layers,
+            usage: USAGE,
+        };
+        // SAFETY: the same contract.
+        let image = unsafe { Image::new(context, info) }?;
+        Ok(Self { context: context.clone(), size, layers, load, mip, kernel, image })
     }
 
     /// What memory the image needs.
     pub fn memory_requirements(&self) -> vk::MemoryRequirements {
-        // SAFETY: the image is ours and live.
-        unsafe { self.context.device.get_image_memory_requirements(self.image) }
+        self.image.memory_requirements()
     }
 
     /// Binds memory of the host, and makes the views.
@@ -138,17 +124,8 @@ impl LightTextures {
         memory: vk::DeviceMemory,
         offset: vk::DeviceSize,
     ) -> Result<(), Error> {
-        let device = &self.context.device;
-        // SAFETY: the caller vouches for memory and offset.
-        unsafe { device.bind_image_memory(self.image, memory, offset) }.call("vkBindImageMemory")?;
-        let levels = self.size.levels();
-        self.view = self.make_view(0..levels)?;
-        self.context.names.name(self.view, "light textures");
-        for level in 0..levels {
-            let view = self.make_view(level..level + 1)?;
-            self.level_views.push(view);
-        }
-        Ok(())
+        // SAFETY: the same contract.
+        unsafe { self.image.bind_memory(memory, offset) }
     }
 
     /// Allocates memory through gpu-allocator and binds it: steps 2 and 3 in one.
@@ -171,17 +148,6 @@ impl LightTextures {
             // SAFETY: the memory was allocated for this image's requirements.
             unsafe { self.bind_memory(memory, offset) }
         })
-    }
-
-    /// A view of some levels of every layer, for sampling and storing alike.
-    fn make_view(&self, levels: Range<u32>) -> Result<vk::ImageView, Error> {
-        let kind = vk::ImageViewType::TYPE_2D_ARRAY;
-        // SAFETY: the image is ours and has memory.
-        unsafe { self.context.view(self.image, kind, FORMAT, self.range(levels)) }
-    }
-
-    fn range(&self, levels: Range<u32>) -> vk::ImageSubresourceRange {
-        color_range(levels, LAYERS * self.layers)
     }
 
     /// The size of every layer.
@@ -207,13 +173,13 @@ impl LightTextures {
     /// `R16G16B16A16_SFLOAT`, in layout `GENERAL` once it was cleared. It can be copied from, but not written
     /// to.
     pub fn image(&self) -> vk::Image {
-        self.image
+        self.image.raw
     }
 
     /// The textures as a pass takes them. A null view before [`LightTextures::bind_memory`], which
     /// `write_set` refuses.
     pub fn resource(&self) -> Resource {
-        Resource::FilteredImage { view: self.view, layout: LAYOUT }
+        Resource::FilteredImage { view: self.image.view, layout: LAYOUT }
     }
 
     /// The layout of a descriptor set for an image that is loaded.
@@ -255,7 +221,9 @@ impl LightTextures {
     /// memory.
     pub unsafe fn write_source_set(&self, set: vk::DescriptorSet, source: Resource) -> Result<(), Error> {
         // SAFETY: the same contract; the level is ours.
-        unsafe { self.load[0].write_set(set, &[source, Resource::StorageImage { view: self.level_view(0) }]) }
+        unsafe {
+            self.load[0].write_set(set, &[source, Resource::StorageImage { view: self.image.level_view(0) }])
+        }
     }
 
     /// Points the sets at the levels. Once is enough.
@@ -270,19 +238,15 @@ impl LightTextures {
     pub unsafe fn write_level_sets(&self, sets: &[vk::DescriptorSet]) -> Result<(), Error> {
         self.check_level_sets(sets)?;
         let levels = self.size.levels() as usize;
-        let mips = (1..levels).map(|level| (self.level_view(level - 1), level));
-        let kernels = (0..levels).map(|level| (self.view, level));
+        let mips = (1..levels).map(|level| (self.image.level_view(level - 1), level));
+        let kernels = (0..levels).map(|level| (self.image.view, level));
         for ((read, level), &set) in mips.chain(kernels).zip(sets) {
             let read = Resource::SampledImage { view: read, layout: LAYOUT };
-            let written = Resource::StorageImage { view: self.level_view(level) };
+            let written = Resource::StorageImage { view: self.image.level_view(level) };
             // SAFETY: the caller vouches for the set; the levels are ours.
             unsafe { self.mip.write_set(set, &[read, written]) }?;
         }
         Ok(())
-    }
-
-    fn level_view(&self, level: usize) -> vk::ImageView {
-        self.level_views.get(level).copied().unwrap_or_default()
     }
 
     /// Records that every layer becomes black, and the image's final layout. Needed once, before anything
@@ -293,15 +257,8 @@ impl LightTextures {
     /// - [`LightTextures::bind_memory`] was called.
     pub unsafe fn record_clear(&self, command_buffer: vk::CommandBuffer) {
         let device = &self.context.device;
-        let all = self.range(0..self.size.levels());
-        let first_use = vk::ImageMemoryBarrier::default()
-            .image(self.image)
-            .subresource_range(all)
-            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .old_layout(vk::ImageLayout::UNDEFINED)
-            .new_layout(LAYOUT)
-            .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE);
+        let unused = (vk::ImageLayout::UNDEFINED, vk::AccessFlags::NONE);
+        let first_use = self.image.barrier(unused, (LAYOUT, vk::AccessFlags::TRANSFER_WRITE));
         let black = vk::ClearColorValue { float32: [0.0, 0.0, 0.0, 1.0] };
         // SAFETY: the caller vouches for the command buffer; the image is ours and has memory.
         unsafe {
@@ -311,7 +268,13 @@ impl LightTextures {
                 (vk::PipelineStageFlags::ALL_COMMANDS, vk::PipelineStageFlags::TRANSFER),
                 &[first_use],
             );
-            device.cmd_clear_color_image(command_buffer, self.image, LAYOUT, &black, &[all]);
+            device.cmd_clear_color_image(
+                command_buffer,
+                self.image.raw,
+                LAYOUT,
+                &black,
+                &[self.image.range()],
+            );
             let cleared = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
             let used = (vk::PipelineStageFlags::ALL_COMMANDS, READ | WRITE);
             self.context.record_barrier(command_buffer, cleared, used);
@@ -429,24 +392,6 @@ impl LightTextures {
 
 const READ: vk::AccessFlags = vk::AccessFlags::SHADER_READ;
 const WRITE: vk::AccessFlags = vk::AccessFlags::SHADER_WRITE;
-
-impl Drop for LightTextures {
-    fn drop(&mut self) {
-        for view in self.level_views.iter().chain([&self.view]) {
-            self.context.written_sets.destroy(*view);
-        }
-        // SAFETY: by the contract of LightTextures::new no recorded use is pending and the device is alive; a
-        // null view is ignored.
-        unsafe {
-            let device = &self.context.device;
-            for view in self.level_views.drain(..) {
-                device.destroy_image_view(view, None);
-            }
-            device.destroy_image_view(self.view, None);
-            device.destroy_image(self.image, None);
-        }
-    }
-}
 
 /// Whether the device has such an image.
 fn check_size(context: &Context, size: PyramidSize, layers: u32) -> Result<(), Error> {

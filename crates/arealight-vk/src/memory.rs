@@ -1,7 +1,8 @@
 //! Memory through the gpu-allocator crate.
 
-use crate::context::{Context, color_range};
+use crate::context::Context;
 use crate::error::{Error, VulkanCall};
+use crate::image::{Image, ImageInfo};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
@@ -126,16 +127,13 @@ impl Drop for Buffer {
     }
 }
 
-/// An image that shaders store to, with a view and memory.
-pub(crate) struct Image {
-    context: Context,
-    pub(crate) raw: vk::Image,
-    pub(crate) view: vk::ImageView,
-    pub(crate) extent: [u32; 3],
-    memory: Option<Memory>,
+/// An image that shaders store to, with memory.
+pub(crate) struct StoredImage {
+    pub(crate) image: Image,
+    _memory: Memory,
 }
 
-impl Image {
+impl StoredImage {
     /// # Safety
     /// As [`Buffer::new`].
     pub(crate) unsafe fn new(
@@ -145,42 +143,25 @@ impl Image {
         extent: [u32; 3],
         image_type: vk::ImageType,
     ) -> Result<Self, Error> {
-        let device = &context.device;
-        let [width, height, depth] = extent;
-        let info = vk::ImageCreateInfo::default()
-            .image_type(image_type)
-            .format(format)
-            .extent(vk::Extent3D { width, height, depth })
-            .mip_levels(1)
-            .array_layers(1)
-            .samples(vk::SampleCountFlags::TYPE_1)
-            .usage(vk::ImageUsageFlags::STORAGE);
-        // SAFETY: the device is valid by the contract of Context::new, here and below.
-        let raw = unsafe { device.create_image(&info, None) }.call("vkCreateImage")?;
-        let view = vk::ImageView::null();
-        // From here on dropping it destroys it
-        let mut image = Self { context: context.clone(), raw, view, extent, memory: None };
-        // SAFETY: as above.
-        let requirements = unsafe { device.get_image_memory_requirements(raw) };
-        let allocation =
-            allocate(&mut allocator.lock(), "arealight image", requirements, |memory, offset| {
-                // SAFETY: the memory was allocated for this image.
-                unsafe { device.bind_image_memory(raw, memory, offset) }.call("vkBindImageMemory")
-            })?;
-        image.memory = Some(allocator.keep(allocation));
-        let kind = vk::ImageViewType::from_raw(image_type.as_raw()); // of one layer
-        // SAFETY: as above.
-        image.view = unsafe { context.view(raw, kind, format, color_range(0..1, 1)) }?;
-        Ok(image)
-    }
-}
-
-impl Drop for Image {
-    fn drop(&mut self) {
-        // SAFETY: by the contract of Image::new; a null view is ignored.
-        unsafe {
-            self.context.device.destroy_image_view(self.view, None);
-            self.context.device.destroy_image(self.raw, None);
-        }
+        let info = ImageInfo {
+            name: "image",
+            image_type,
+            view_type: vk::ImageViewType::from_raw(image_type.as_raw()), // of one layer
+            format,
+            extent,
+            levels: 1,
+            layers: 1,
+            usage: vk::ImageUsageFlags::STORAGE,
+        };
+        // SAFETY: the same contract.
+        let mut image = unsafe { Image::new(context, info) }?;
+        let requirements = image.memory_requirements();
+        let bind = |memory, offset| {
+            // SAFETY: the memory was allocated for this image.
+            unsafe { image.bind_memory(memory, offset) }
+        };
+        let allocation = allocate(&mut allocator.lock(), "arealight image", requirements, bind)?;
+        let _memory = allocator.keep(allocation);
+        Ok(Self { image, _memory })
     }
 }

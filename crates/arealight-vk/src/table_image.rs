@@ -1,7 +1,8 @@
 //! The light table on the GPU: an array image of [`arealight::table::LAYERS`] layers.
 
-use crate::context::{Context, color_range};
-use crate::error::{Error, VulkanCall};
+use crate::context::Context;
+use crate::error::Error;
+use crate::image::{Image, ImageInfo};
 use crate::resource::Resource;
 use arealight::LightTable;
 use arealight::table::LAYERS;
@@ -48,8 +49,7 @@ impl TableFormat {
 #[derive(Debug)]
 pub struct TableImage {
     context: Context,
-    image: vk::Image,
-    view: vk::ImageView,
+    image: Image,
     format: TableFormat,
     size: u32,
 }
@@ -67,20 +67,19 @@ impl TableImage {
     /// # Errors
     /// [`Error::Vulkan`] where a call fails.
     pub unsafe fn new(context: &Context, table: &LightTable, format: TableFormat) -> Result<Self, Error> {
-        let info = vk::ImageCreateInfo::default()
-            .image_type(vk::ImageType::TYPE_2D)
-            .format(format.vulkan())
-            .extent(vk::Extent3D { width: table.size(), height: table.size(), depth: 1 })
-            .mip_levels(1)
-            .array_layers(LAYERS)
-            .samples(vk::SampleCountFlags::TYPE_1)
-            .tiling(vk::ImageTiling::OPTIMAL)
-            .usage(vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST)
-            .initial_layout(vk::ImageLayout::UNDEFINED);
-        // SAFETY: the device is valid by the contract of Context::new.
-        let image = unsafe { context.device.create_image(&info, None) }.call("vkCreateImage")?;
-        context.names.name(image, "table");
-        Ok(Self { context: context.clone(), image, view: vk::ImageView::null(), format, size: table.size() })
+        let info = ImageInfo {
+            name: "table",
+            image_type: vk::ImageType::TYPE_2D,
+            view_type: vk::ImageViewType::TYPE_2D_ARRAY,
+            format: format.vulkan(),
+            extent: [table.size(), table.size(), 1],
+            levels: 1,
+            layers: LAYERS,
+            usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
+        };
+        // SAFETY: the same contract.
+        let image = unsafe { Image::new(context, info) }?;
+        Ok(Self { context: context.clone(), image, format, size: table.size() })
     }
 
     /// The texels of the table that it was made for, in its format: what the staging buffer of
@@ -91,8 +90,7 @@ impl TableImage {
 
     /// What memory the image needs.
     pub fn memory_requirements(&self) -> vk::MemoryRequirements {
-        // SAFETY: the image is ours and live.
-        unsafe { self.context.device.get_image_memory_requirements(self.image) }
+        self.image.memory_requirements()
     }
 
     /// Binds memory of the host, and makes the view.
@@ -108,15 +106,8 @@ impl TableImage {
         memory: vk::DeviceMemory,
         offset: vk::DeviceSize,
     ) -> Result<(), Error> {
-        let device = &self.context.device;
-        // SAFETY: the caller vouches for memory and offset.
-        unsafe { device.bind_image_memory(self.image, memory, offset) }.call("vkBindImageMemory")?;
-        let kind = vk::ImageViewType::TYPE_2D_ARRAY;
-        let range = color_range(0..1, LAYERS);
-        // SAFETY: the image has memory now.
-        self.view = unsafe { self.context.view(self.image, kind, self.format.vulkan(), range) }?;
-        self.context.names.name(self.view, "table");
-        Ok(())
+        // SAFETY: the same contract.
+        unsafe { self.image.bind_memory(memory, offset) }
     }
 
     /// Allocates memory through gpu-allocator and binds it: steps 2 and 3 in one.
@@ -156,20 +147,10 @@ impl TableImage {
         offset: vk::DeviceSize,
     ) {
         let device = &self.context.device;
-        let barrier = vk::ImageMemoryBarrier::default()
-            .image(self.image)
-            .subresource_range(color_range(0..1, LAYERS))
-            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED);
-        let before = barrier
-            .old_layout(vk::ImageLayout::UNDEFINED)
-            .new_layout(vk::ImageLayout::TRANSFER_DST_OPTIMAL)
-            .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE);
-        let after = barrier
-            .old_layout(vk::ImageLayout::TRANSFER_DST_OPTIMAL)
-            .new_layout(Self::LAYOUT)
-            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
-            .dst_access_mask(vk::AccessFlags::SHADER_READ);
+        let unused = (vk::ImageLayout::UNDEFINED, vk::AccessFlags::NONE);
+        let copied = (vk::ImageLayout::TRANSFER_DST_OPTIMAL, vk::AccessFlags::TRANSFER_WRITE);
+        let before = self.image.barrier(unused, copied);
+        let after = self.image.barrier(copied, (Self::LAYOUT, vk::AccessFlags::SHADER_READ));
         let copy = vk::BufferImageCopy::default()
             .buffer_offset(offset)
             .image_subresource(vk::ImageSubresourceLayers {
@@ -193,7 +174,7 @@ impl TableImage {
             device.cmd_copy_buffer_to_image(
                 command_buffer,
                 staging,
-                self.image,
+                self.image.raw,
                 vk::ImageLayout::TRANSFER_DST_OPTIMAL,
                 &[copy],
             );
@@ -203,24 +184,12 @@ impl TableImage {
 
     /// A view of all layers, for shaders of the host's own. Null before [`TableImage::bind_memory`].
     pub fn view(&self) -> vk::ImageView {
-        self.view
+        self.image.view
     }
 
     /// The table as a pass takes it, after the upload. A null view before [`TableImage::bind_memory`], which
     /// `write_set` refuses.
     pub fn resource(&self) -> Resource {
-        Resource::SampledImage { view: self.view, layout: Self::LAYOUT }
-    }
-}
-
-impl Drop for TableImage {
-    fn drop(&mut self) {
-        self.context.written_sets.destroy(self.view);
-        // SAFETY: by the contract of TableImage::new no recorded use is pending and the device is alive; a
-        // null view is ignored.
-        unsafe {
-            self.context.device.destroy_image_view(self.view, None);
-            self.context.device.destroy_image(self.image, None);
-        }
+        Resource::SampledImage { view: self.image.view, layout: Self::LAYOUT }
     }
 }

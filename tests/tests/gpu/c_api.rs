@@ -5,12 +5,12 @@ use arealight_capi::{
     AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_SPECULAR_INPUT,
     AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TWO_SIDED, AREALIGHT_LIGHT_DISK, AREALIGHT_LIGHT_MESH,
     AREALIGHT_LIGHT_SPHERE, AREALIGHT_LIGHT_TUBE, AREALIGHT_SPECULAR_LOBES_ONE, Arealight, ArealightFrame,
-    ArealightHost, ArealightLight, ArealightLightSummary, ArealightPackedLights, ArealightPass,
-    ArealightPassOptions, ArealightReach, ArealightResources, ArealightResult, ArealightTable,
+    ArealightHost, ArealightLight, ArealightLightSummary, ArealightModule, ArealightPackedLights,
+    ArealightPass, ArealightPassOptions, ArealightReach, ArealightResources, ArealightResult, ArealightTable,
     ArealightTileMemory, ArealightUpload, arealight_abi_version, arealight_create, arealight_destroy,
     arealight_light_reach, arealight_lobe_density, arealight_lobe_horizons, arealight_pack_lights,
-    arealight_pass_create, arealight_pass_create_with_module, arealight_pass_destroy, arealight_pass_prepare,
-    arealight_pass_record, arealight_pass_set_layout, arealight_pass_tile_memory, arealight_pass_write_set,
+    arealight_pass_create, arealight_pass_destroy, arealight_pass_prepare, arealight_pass_record,
+    arealight_pass_set_layout, arealight_pass_tile_memory, arealight_pass_write_set,
     arealight_table_bind_memory, arealight_table_memory, arealight_table_upload,
 };
 use arealight_tests::c_library::{
@@ -428,14 +428,9 @@ fn passes_with_tiles_ask_for_their_buffers() {
             |options: &ArealightPassOptions, out| arealight_pass_create(library.arealight, options, out);
         refused(create(&wrong, &raw mut pass), ErrorArgument, "cull_threshold: is 1");
         let words = [0_u32; 4];
-        let with_module = arealight_pass_create_with_module(
-            library.arealight,
-            &raw const tiles,
-            words.as_ptr(),
-            16,
-            &raw mut pass,
-        );
-        refused(with_module, ErrorArgument, "options.tile_capacity: must be 0");
+        let module = ArealightModule { words: words.as_ptr(), size: 16, host_set_layout: 0 };
+        let with_module = ArealightPassOptions { module, ..tiles };
+        refused(create(&with_module, &raw mut pass), ErrorArgument, "options.tile_capacity: must be 0");
         good(create(&tiles, &raw mut pass));
 
         // What to allocate; a pass without tiles needs nothing

@@ -72,7 +72,7 @@ impl<'a> CPasses<'a> {
     fn new(engine: &'a TestEngine, library: &'a CLibrary<'a>, shadow_rays: u32) -> Self {
         let options = ArealightPassOptions { shadow_rays, ..ArealightPassOptions::default() };
         let shadows =
-            ArealightShadowOptions { filter: AREALIGHT_SHADOW_FILTER_GATHER, history: 0, output: 0 };
+            ArealightShadowOptions { filter: AREALIGHT_SHADOW_FILTER_GATHER, ..Default::default() };
         let (mut shade, mut shadow) = (null_mut(), null_mut());
         // SAFETY: the pointers are valid.
         unsafe {

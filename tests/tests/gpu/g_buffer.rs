@@ -1,7 +1,7 @@
 //! G-buffers of other layouts: the same surface in, the same radiance out.
 
 use arealight_capi::{
-    ArealightImage, ArealightPassOptions, ArealightResult, arealight_pass_create_with_module,
+    ArealightImage, ArealightModule, ArealightPassOptions, ArealightResult, arealight_pass_create,
     arealight_pass_destroy,
 };
 use arealight_tests::c_library::{CLibrary, DeviceMemory, c_lamp, good, refused};
@@ -182,15 +182,13 @@ fn a_bridge_of_the_host_reads_its_own_g_buffer(engine: &TestEngine) {
     let memory = DeviceMemory::new(engine, &library.table_memory());
     library.upload(&memory);
     let surfaces = options(GBufferLayout::Arealight).surfaces.bits();
-    let c_options = ArealightPassOptions { surfaces, ..ArealightPassOptions::default() };
     let module = shade_with_bridge();
     let make = |words: &[u32], size| {
         let mut pass = null_mut();
-        let (options, words) = (&raw const c_options, words.as_ptr());
+        let module = ArealightModule { words: words.as_ptr(), size, host_set_layout: 0 };
+        let options = ArealightPassOptions { surfaces, module, ..ArealightPassOptions::default() };
         // SAFETY: the pointers are valid, with so many bytes or more.
-        let made = unsafe {
-            arealight_pass_create_with_module(library.arealight, options, words, size, &raw mut pass)
-        };
+        let made = unsafe { arealight_pass_create(library.arealight, &raw const options, &raw mut pass) };
         (made, pass)
     };
     let (made, pass) = make(&module, size_of_val(module.as_slice()));
@@ -203,7 +201,7 @@ fn a_bridge_of_the_host_reads_its_own_g_buffer(engine: &TestEngine) {
     // What is no SPIR-V is refused
     let argument = ArealightResult::ErrorArgument;
     refused(make(&[7], 4).0, argument, "module: does not begin as SPIR-V does");
-    refused(make(&module, 7).0, argument, "size: 7 bytes are no whole words of SPIR-V");
+    refused(make(&module, 7).0, argument, "module.size: 7 bytes are no whole words of SPIR-V");
     let info = ShadePassInfo { module: Some(vec![7]), ..options(GBufferLayout::Arealight).into() };
     // SAFETY: nothing is made where an error is returned.
     let error = unsafe { ShadePass::new(engine.context(), info) };

@@ -74,8 +74,9 @@ macro_rules! layouts {
     };
 }
 
-fn layouts() -> [Layout; 26] {
+fn layouts() -> [Layout; 27] {
     layouts! {
+        ArealightModule { words, size, host_set_layout }
         ArealightHost {
             abi_version, api_version, get_instance_proc_addr, get_device_proc_addr, instance,
             physical_device, device,
@@ -90,7 +91,7 @@ fn layouts() -> [Layout; 26] {
             surfaces, form_factor, horizon, specular_lobes, lobes, footprint, position, output,
             radiance_images, radiance_format, g_buffer, tile_capacity, tile_cull_threshold, tile_least_quads,
             shadow_rays,
-            camera, rectangle, texels_per_pixel, samples, stencil, light_counts, descriptors,
+            camera, rectangle, texels_per_pixel, samples, stencil, light_counts, descriptors, module,
         }
         ArealightSetLayout {
             layout, sampled_images, combined_image_samplers, storage_images, storage_buffers,
@@ -118,10 +119,10 @@ fn layouts() -> [Layout; 26] {
             stencil_reference, light_offsets,
         }
         ArealightTileMemory { size, usage, reserved }
-        ArealightShadowOptions { filter, history, output }
+        ArealightShadowOptions { filter, history, output, module }
         ArealightShadowResources { shadow, radiance, history, blocker_nodes, blocker_triangles }
         ArealightShadowFrame { frame, host_set, origin_shift, reserved }
-        ArealightMediumOptions { shadow_rays, samples, by_image, jitter, fill_hidden }
+        ArealightMediumOptions { shadow_rays, samples, by_image, jitter, fill_hidden, module }
         ArealightMediumResources { froxels, medium, blocker_nodes, blocker_triangles }
         ArealightMediumFrame {
             frame, host_set, froxels, scattering, extinction, anisotropy, nearest, farthest, seed,

@@ -1,10 +1,10 @@
 //! What each frame in flight has for itself.
 
 use super::{LEAST, mapped};
-use crate::context::{Context, color_range};
+use crate::context::Context;
 use crate::error::Error;
 use crate::medium::{MediumPass, MediumResources};
-use crate::memory::{Buffer, Image, SharedAllocator};
+use crate::memory::{Buffer, SharedAllocator, StoredImage};
 use crate::resource::Resource;
 use crate::shade::{ShadePass, ShadeResources};
 use crate::shadows::{BlockerResources, ShadowPass, ShadowResources};
@@ -26,15 +26,15 @@ pub(super) struct Place {
     lights: [Buffer; 3],
     tile_lists: Option<Buffer>,
     shadows: Option<Shadows>,
-    froxels: Option<Image>,
+    froxels: Option<StoredImage>,
 }
 
 /// What shadows need of a frame's size.
 struct Shadows {
     picks: Buffer,
-    shadow: Image,
+    shadow: StoredImage,
     /// Where the radiance without shadows goes, if it may not overwrite the host's.
-    unshadowed: Option<Image>,
+    unshadowed: Option<StoredImage>,
 }
 
 impl Place {
@@ -107,23 +107,25 @@ impl Place {
             self.tile_lists = Some(on_device(needed.usage, needed.size)?);
         }
         if let Some(extent) = froxels.map(|froxels| froxels.map(|count| count.max(1)))
-            && self.froxels.as_ref().is_none_or(|image| image.extent != extent)
+            && self.froxels.as_ref().is_none_or(|image| image.image.info.extent != extent)
         {
             // SAFETY: as above.
-            let image =
-                unsafe { Image::new(context, allocator, MediumPass::FORMAT, extent, vk::ImageType::TYPE_3D) };
+            let image = unsafe {
+                StoredImage::new(context, allocator, MediumPass::FORMAT, extent, vk::ImageType::TYPE_3D)
+            };
             self.froxels = Some(image?);
         }
         let extent = [size[0], size[1], 1].map(|side| side.max(1));
-        let is_other = self.shadows.as_ref().is_none_or(|shadows| shadows.shadow.extent != extent);
+        let is_other = self.shadows.as_ref().is_none_or(|shadows| shadows.shadow.image.info.extent != extent);
         if options.shadow_rays > 0 && is_other {
             let format = match options.format {
                 RadianceFormat::Rgba32Float => vk::Format::R32G32B32A32_SFLOAT,
                 RadianceFormat::Rgba16Float => vk::Format::R16G16B16A16_SFLOAT,
             };
             // SAFETY: as above.
-            let image =
-                |format| unsafe { Image::new(context, allocator, format, extent, vk::ImageType::TYPE_2D) };
+            let image = |format| unsafe {
+                StoredImage::new(context, allocator, format, extent, vk::ImageType::TYPE_2D)
+            };
             self.shadows = Some(Shadows {
                 picks: on_device(vk::BufferUsageFlags::STORAGE_BUFFER, shade.picks_size(size))?,
                 shadow: image(ShadowPass::SHADOW_FORMAT)?,
@@ -142,7 +144,7 @@ impl Place {
             lights,
             light_vertices,
             shapes: Some(shapes),
-            radiance: unshadowed.map_or(g_buffer.radiance, |image| Resource::stored(image.view)),
+            radiance: unshadowed.map_or(g_buffer.radiance, |image| Resource::stored(image.image.view)),
             picks: self.shadows.as_ref().map(|shadows| Resource::buffer(shadows.picks.raw)),
             tile_lists: self.tile_lists.as_ref().map(|lists| Resource::buffer(lists.raw)),
             ..*g_buffer
@@ -159,7 +161,8 @@ impl Place {
         let shadows = self.shadows.as_ref();
         let own = shadows.and_then(|shadows| shadows.unshadowed.as_ref());
         ShadowResources {
-            shadow: shadows.map_or_else(Resource::default, |shadows| Resource::stored(shadows.shadow.view)),
+            shadow: shadows
+                .map_or_else(Resource::default, |shadows| Resource::stored(shadows.shadow.image.view)),
             radiance: own.map(|_| g_buffer.radiance),
             history: None,
             blockers: self.blocker_resources(),
@@ -175,7 +178,7 @@ impl Place {
     /// Those of a medium's pass.
     pub(super) fn medium_resources(&self) -> MediumResources {
         let froxels =
-            self.froxels.as_ref().map_or_else(Resource::default, |image| Resource::stored(image.view));
+            self.froxels.as_ref().map_or_else(Resource::default, |image| Resource::stored(image.image.view));
         MediumResources { froxels, medium: None, blockers: self.blocker_resources() }
     }
 
@@ -184,16 +187,9 @@ impl Place {
     /// # Safety
     /// The command buffer is recording, outside a render pass.
     pub(super) unsafe fn record_layouts(&self, context: &Context, command_buffer: vk::CommandBuffer) {
-        let barrier = |image: &Image| {
-            vk::ImageMemoryBarrier::default()
-                .image(image.raw)
-                .subresource_range(color_range(0..1, 1))
-                .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-                .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-                .old_layout(vk::ImageLayout::UNDEFINED)
-                .new_layout(vk::ImageLayout::GENERAL)
-                .dst_access_mask(vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE)
-        };
+        let unused = (vk::ImageLayout::UNDEFINED, vk::AccessFlags::NONE);
+        let written = vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE;
+        let barrier = |image: &StoredImage| image.image.barrier(unused, (vk::ImageLayout::GENERAL, written));
         let of_shadows = self.shadows.iter().flat_map(|of| std::iter::once(&of.shadow).chain(&of.unshadowed));
         let images: Vec<_> = of_shadows.chain(&self.froxels).map(barrier).collect();
         if images.is_empty() {

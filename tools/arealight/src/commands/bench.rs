@@ -1,6 +1,5 @@
 //! `arealight bench`
 
-mod compare;
 mod compiled;
 mod furnace;
 mod ladder;
@@ -40,7 +39,6 @@ pub struct Arguments {
 
 #[derive(clap::Subcommand)]
 enum Bench {
-    Compare(compare::Arguments),
     Compiled(compiled::Arguments),
     Furnace(furnace::Arguments),
     Lights(lights::Arguments),
@@ -55,7 +53,6 @@ enum Bench {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     match &arguments.bench {
         None => ladder::run(&arguments.ladder),
-        Some(Bench::Compare(arguments)) => compare::run(arguments),
         Some(Bench::Compiled(arguments)) => compiled::run(arguments),
         Some(Bench::Furnace(arguments)) => furnace::run(arguments),
         Some(Bench::Lights(arguments)) => lights::run(arguments),

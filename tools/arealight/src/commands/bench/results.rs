@@ -1,10 +1,9 @@
 //! `arealight bench results`
 
-use super::compare::read;
 use super::write;
 use crate::failure::Failure;
-use arealight_benches::ladder::results;
-use std::path::PathBuf;
+use arealight_benches::ladder::{Ladder, results};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Make the page of what was measured on devices: README.md of a folder, of the files in it that `arealight
@@ -30,4 +29,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let runs = files.iter().map(|file| Ok((name(file), read(file)?))).collect::<Result<Vec<_>, Failure>>()?;
     write(&arguments.folder.join("README.md"), &results(&runs))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Reads what `arealight bench --save FILE` wrote.
+fn read(path: &Path) -> Result<Ladder, Failure> {
+    let text = std::fs::read_to_string(path).map_err(|error| Failure::input(path, error))?;
+    serde_json::from_str(&text).map_err(|error| {
+        Failure::input(path, format!("{error}; write one with `arealight bench --save {}`", path.display()))
+    })
 }
