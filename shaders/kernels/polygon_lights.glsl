@@ -19,22 +19,6 @@ ArealightQuadLight load_quad(ArealightGpuLight record) {
                               (record.flags & LIGHT_TWO_SIDED) != 0u);
 }
 
-// The place of a light's image; without one, of none.
-ArealightImage load_image(ArealightGpuLight record) {
-    ArealightImage image = ArealightImage(AREALIGHT_NO_IMAGE, vec3(0.0), vec3(0.0), vec3(0.0), vec2(0.0),
-                                          vec2(0.0), 1.0);
-    if (AREALIGHT_HAS_TEXTURED_POLYGONS && record.texture_layer != NO_LIGHT_TEXTURE) {
-        uint row = record.first_vertex + record.vertex_count;
-        vec4 corner = light_vertices[row];
-        vec4 axis_u = light_vertices[row + 1u];
-        vec4 axis_v = light_vertices[row + 2u];
-        image = ArealightImage(record.texture_layer, corner.xyz, axis_u.xyz, axis_v.xyz,
-                               vec2(corner.w, axis_u.w),
-                               vec2(axis_v.w, light_vertices[row + 3u].x), light_vertices[row + 3u].y);
-    }
-    return image;
-}
-
 ArealightPolygonLight load_polygon(ArealightGpuLight record) {
     return ArealightPolygonLight(record.radiance, record.center, record.normal, record.first_vertex,
                                  record.vertex_count,

@@ -9,6 +9,7 @@
 #include "shadow_resources.glsl"
 
 #include "table_image.glsl"
+#include "light_textures.glsl"
 #include "arealight/material.glsl"
 #include "arealight/shadows/ray_origin.glsl"
 #include "arealight/shadows/sequence.glsl"
@@ -109,32 +110,74 @@ bool smaller_opening(ArealightGpuLight record, vec3 position, out ArealightShado
     return arealight_opening_height(row, 0u, position) > 0.0 && sizes.x < sizes.y;
 }
 
-// A ray to a light with a profile or an opening: of several to all of the light, or through all of the
-// opening, one, by the factor of what they meet. The light's `size` becomes that of what the opening shows.
-bool draw_shaped(ArealightGpuLight record, ArealightShadowOutline outline, ArealightPoint point, mat3 space,
-                 vec2 random, inout float size, out ArealightShadowRay ray) {
-    const int CANDIDATES = 8;
+// Texels to a side of what a light's image is drawn by.
+const float IMAGE_SIDE = 8.0;
+
+// The radiance of a place in a light's plane, from its center, as a part of the light's: of no image 1. A
+// little of the mean is everywhere, so that of an image that is black but for a spot all is drawn.
+float image_factor(ArealightImage image, vec3 place) {
+    if (!AREALIGHT_HAS_TEXTURED_POLYGONS || image.layer == AREALIGHT_NO_IMAGE) {
+        return 1.0;
+    }
+    vec3 normal = cross(image.axis_u, image.axis_v);
+    vec3 from = place - image.corner;
+    vec2 at = vec2(dot(from, cross(image.axis_v, normal)), dot(from, cross(normal, image.axis_u)))
+            / max(dot(normal, normal), 1e-37);
+    float top = log2(float(arealight_bridge_light_texture_side()));
+    vec2 middle = image.low + 0.5 * image.size;
+    vec2 there = image.low + clamp(at, 0.0, 1.0) * image.size;
+    vec3 mean = arealight_bridge_light_texture(image.layer, 0u, middle, top).rgb;
+    vec3 texel = arealight_bridge_light_texture(image.layer, 0u, there, max(top - log2(IMAGE_SIDE), 0.0)).rgb;
+    return arealight_luminance(texel + 0.01 * mean);
+}
+
+// Some light has places that shine brighter towards a point than others.
+const bool HAS_UNEVEN = HAS_SHAPED || AREALIGHT_HAS_TEXTURED_POLYGONS;
+
+bool is_uneven(ArealightGpuLight record) {
+    return (HAS_SHAPED && (record.flags & LIGHT_SHAPED) != 0u)
+        || (AREALIGHT_HAS_TEXTURED_POLYGONS && record.texture_layer != NO_LIGHT_TEXTURE);
+}
+
+// A ray over an outline; to a light with a profile, an opening or an image, of several to all of it, or
+// through all of the opening, one, by the factor of what they meet. The light's `size` becomes that of what
+// the opening shows.
+bool draw_ray(uint pick, ArealightShadowOutline outline, ArealightPoint point, mat3 space, vec2 random,
+              inout float size, out ArealightShadowRay ray) {
+    if (!HAS_UNEVEN) {
+        return arealight_draw_ray(outline, point.to_frame, space, random, ray);
+    }
+    uint light = (pick & PICK_SHAPE) == 0u ? pick & PICK_INDEX : 0u;
+    bool uneven = (pick & PICK_SHAPE) == 0u && is_uneven(lights[light]);
     ArealightShadowOutline opening;
-    bool through = smaller_opening(record, point.position, opening);
-    vec3 to_light = record.center - point.position;
+    bool through = uneven && smaller_opening(lights[light], point.position, opening);
     if (through) {
         outline = opening;
         float area = 2.0 * length(cross(opening.axis_u, opening.axis_v));
-        size = min(size, sqrt(area) * length(to_light) / length(opening.center));
+        float far = distance(lights[light].center, point.position);
+        size = min(size, sqrt(area) * far / length(opening.center));
     }
     float choice = fract(dot(random, vec2(37.31, 91.73)));
     float sum = 0.0;
     bool is_drawn = false;
-    for (int index = 0; index < CANDIDATES; index++) {
+    // An image may be dark but for an eighth
+    int candidates = !uneven ? 1 : lights[light].texture_layer == NO_LIGHT_TEXTURE ? 8 : 16;
+    for (int index = 0; index < candidates; index++) {
         ArealightShadowRay one;
         // Spread over the light: the sequence of the plastic number
         vec2 place = fract(random + float(index) * vec2(0.75487767, 0.56984029));
         if (arealight_draw_ray(outline, point.to_frame, space, place, one)) {
-            float height = dot(record.normal, to_light) / dot(record.normal, one.direction);
-            one.distance = through ? clamp(height, 0.0, 1e30) : one.distance;
-            vec3 offset = one.distance * one.direction;
-            float factor = shaping_factor(record, record.normal, point.position, offset);
-            factor = through && !is_in_light(record, offset - to_light) ? 0.0 : factor;
+            float factor = 1.0;
+            if (uneven) {
+                ArealightGpuLight record = lights[light];
+                vec3 to_light = record.center - point.position;
+                float height = dot(record.normal, to_light) / dot(record.normal, one.direction);
+                one.distance = through ? clamp(height, 0.0, 1e30) : one.distance;
+                vec3 offset = one.distance * one.direction;
+                factor = shaping_factor(record, record.normal, point.position, offset)
+                    * image_factor(load_image(record), offset - to_light);
+                factor = through && !is_in_light(record, offset - to_light) ? 0.0 : factor;
+            }
             if (factor > 0.0 && arealight_choose(choice, sum, factor)) {
                 ray = one;
                 is_drawn = true;
@@ -152,14 +195,7 @@ vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec2 rand
     mat3 space = arealight_lobe_at(point, lobe).space;
     ArealightShadowOutline outline = chosen_outline(light, space * point.to_frame, random.x);
     ArealightShadowRay ray;
-    bool is_drawn;
-    uint index = pick & PICK_INDEX;
-    if (HAS_SHAPED && (pick & PICK_SHAPE) == 0u && (lights[index].flags & LIGHT_SHAPED) != 0u) {
-        is_drawn = draw_shaped(lights[index], outline, point, space, random, light.size, ray);
-    } else {
-        is_drawn = arealight_draw_ray(outline, point.to_frame, space, random, ray);
-    }
-    if (!is_drawn) {
+    if (!draw_ray(pick, outline, point, space, random, light.size, ray)) {
         return vec2(1.0, 0.0);
     }
     // What is below the surface does not arrive; where its geometry is above its shading, the ray meets it

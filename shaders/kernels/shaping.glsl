@@ -1,9 +1,10 @@
 #ifndef SHAPING_GLSL
 #define SHAPING_GLSL
 
-// Profiles and openings of polygon lights, by their records.
+// Profiles, openings and images of polygon lights, by their records.
 
 #include "arealight/lights/opening.glsl"
+#include "arealight/textures/footprint.glsl"
 #include "light_records.glsl"
 #include "light_vertices.glsl"
 
@@ -27,6 +28,22 @@ float shaping_factor(ArealightGpuLight record, vec3 normal, vec3 position, vec3 
         factor *= arealight_profile_factor(rows.x, normal, offset);
     }
     return factor;
+}
+
+// The place of a light's image; without one, of none.
+ArealightImage load_image(ArealightGpuLight record) {
+    ArealightImage image = ArealightImage(AREALIGHT_NO_IMAGE, vec3(0.0), vec3(0.0), vec3(0.0), vec2(0.0),
+                                          vec2(0.0), 1.0);
+    if (AREALIGHT_HAS_TEXTURED_POLYGONS && record.texture_layer != NO_LIGHT_TEXTURE) {
+        uint row = record.first_vertex + record.vertex_count;
+        vec4 corner = light_vertices[row];
+        vec4 axis_u = light_vertices[row + 1u];
+        vec4 axis_v = light_vertices[row + 2u];
+        image = ArealightImage(record.texture_layer, corner.xyz, axis_u.xyz, axis_v.xyz,
+                               vec2(corner.w, axis_u.w),
+                               vec2(axis_v.w, light_vertices[row + 3u].x), light_vertices[row + 3u].y);
+    }
+    return image;
 }
 
 // Whether a place in a light's plane, from its center, is within its outline.

@@ -161,7 +161,6 @@ impl StoredImage {
             unsafe { image.bind_memory(memory, offset) }
         };
         let allocation = allocate(&mut allocator.lock(), "arealight image", requirements, bind)?;
-        let _memory = allocator.keep(allocation);
-        Ok(Self { image, _memory })
+        Ok(Self { image, _memory: allocator.keep(allocation) })
     }
 }

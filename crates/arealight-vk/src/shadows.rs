@@ -98,7 +98,7 @@ pub struct BlockerResources {
 /// so that the part of the rays that arrive is, on average, the part of the radiance that does; where all or
 /// none arrive there is no noise.
 ///
-/// Textured lights are sampled uniformly; the ends of open and flat tubes get no rays.
+/// Rays to a polygon with an image are drawn by what it shows, in grey; to a disk with one evenly.
 #[derive(Debug)]
 pub struct ShadowPass {
     rays: Pipelines,

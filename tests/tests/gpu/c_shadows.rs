@@ -71,8 +71,7 @@ const FROM_CLIP: [f32; 16] = glam::Mat4::IDENTITY.to_cols_array();
 impl<'a> CPasses<'a> {
     fn new(engine: &'a TestEngine, library: &'a CLibrary<'a>, shadow_rays: u32) -> Self {
         let options = ArealightPassOptions { shadow_rays, ..ArealightPassOptions::default() };
-        let shadows =
-            ArealightShadowOptions { filter: AREALIGHT_SHADOW_FILTER_GATHER, ..Default::default() };
+        let shadows = ArealightShadowOptions { filter: AREALIGHT_SHADOW_FILTER_GATHER, ..Default::default() };
         let (mut shade, mut shadow) = (null_mut(), null_mut());
         // SAFETY: the pointers are valid.
         unsafe {

@@ -1,10 +1,10 @@
 //! Lights with a profile on the GPU: known radiance, the float64 twin, and where they are hard.
 
 use arealight::plan::{ShadowFilter, ShadowHistory};
-use arealight::{Opening, Profile};
+use arealight::{LightTexture, Opening, Profile, PyramidSize, TexturePart};
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{SupportedCase, read_cases};
-use arealight_engine::Reference;
+use arealight_engine::{Engine, Reference, SourceImage, SourceTexels};
 use arealight_oracle::shading::ltc_on;
 use arealight_tests::prelude::*;
 use arealight_tests::scenes::box_of;
@@ -278,7 +278,10 @@ fn truth_has_openings() {
 /// these bounds of pixels' errors, without and with rays; `others` are not.
 fn assert_monte_carlo(lamp: &Light, [plain_bound, shadowed_bound]: [f64; 2], others: &[(&str, &Light)]) {
     const SIZE: [u32; 2] = [16, 16];
-    let Some(engine) = TestEngine::new() else { return };
+    let Some(mut engine) = TestEngine::new() else { return };
+    if lamp.texture.is_some() {
+        load_bright_edge(&mut engine);
+    }
     let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
     let [a, b, c, d] = [(-2.0, 2.0), (2.0, 2.0), (2.0, -2.0), (-2.0, -2.0)].map(|(x, z)| corner(x, 0.0, z));
     let mut triangles = vec![[a, b, c], [a, c, d]];
@@ -357,6 +360,30 @@ fn a_spot_behind_doors_and_its_shadows_are_those_of_monte_carlo() {
     // 4096 samples, half of them hidden, of a factor from 0 to 1 leave .015 of a pixel's light, three times
     // that of the mean's; 256 rays .03 in the penumbra, which is most of it
     assert_monte_carlo(&spot, [0.06, 0.1], &[("without the cone", &wide), ("without the doors", &open)]);
+}
+
+/// A picture that is dim but for its left edge.
+fn load_bright_edge(engine: &mut Engine) {
+    const SIDE: u32 = 64;
+    let texel = |index| if index % SIDE < SIDE / 8 { [1.0, 0.9, 0.7, 1.0] } else { [0.01, 0.01, 0.02, 1.0] };
+    let texels: Vec<[f32; 4]> = (0..SIDE * SIDE).map(texel).collect();
+    let texels = SourceTexels::Linear(&texels);
+    let image = SourceImage { texels, size: [SIDE; 2], part: TexturePart::default() };
+    engine.load_textures(PyramidSize::new(SIDE).unwrap(), &[image]).unwrap();
+}
+
+#[test]
+fn a_picture_and_its_shadows_are_those_of_monte_carlo() {
+    let uvs = [(1.0, 1.0), (0.0, 1.0), (0.0, 0.0), (1.0, 0.0)].map(DVec2::from);
+    let shown = |uvs: [DVec2; 4]| Light {
+        shape: square_over(0.7, 1.6),
+        radiance: Vec3::splat(5.0),
+        texture: Some(LightTexture { layer: 0, uvs: uvs.to_vec() }),
+        ..Light::default()
+    };
+    let mirrored = uvs.map(|at| DVec2::new(1.0 - at.x, at.y));
+    // An eighth of the samples meets what shines
+    assert_monte_carlo(&shown(uvs), [0.07, 0.1], &[("the picture mirrored", &shown(mirrored))]);
 }
 
 #[test]
