@@ -275,7 +275,7 @@ impl Image {
     /// size. The images are ready to be copied to and from, and hold the rectangles.
     pub fn record_copies(&self, commands: vk::CommandBuffer, from: &Self, rectangles: &[[[u32; 2]; 3]]) {
         let region = |[source, destination, [width, height]]: &[[u32; 2]; 3]| {
-            let offset = |[x, y]: [u32; 2]| vk::Offset3D { x: x as i32, y: y as i32, z: 0 };
+            let offset = |[x, y]: [u32; 2]| vk::Offset3D { x: x.cast_signed(), y: y.cast_signed(), z: 0 };
             let layers =
                 vk::ImageSubresourceLayers::default().aspect_mask(aspect(self.format)).layer_count(1);
             vk::ImageCopy::default()

@@ -182,7 +182,7 @@ impl<'a> Rounds<'a> {
             for (index, tile) in tiles.iter_mut().enumerate() {
                 let [corner, _] = rectangles[index];
                 let corner = [0, 1].map(|axis| cells.corner(index)[axis] + tile.corner[axis] - corner[axis]);
-                let reflected = within(&shaded, size[0], [corner, tile.size]).map(|color| color.as_dvec3());
+                let reflected = within(&shaded, size[0], [corner, tile.size]).map(Vec3::as_dvec3);
                 tile.means.add(&reflected.collect::<Vec<DVec3>>(), RAYS);
                 tile.estimate(self.supersample as usize, self.stops);
             }
