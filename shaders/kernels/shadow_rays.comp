@@ -161,30 +161,28 @@ bool draw_ray(uint pick, ArealightShadowOutline outline, ArealightPoint point, m
     float sum = 0.0;
     bool is_drawn = false;
     // An image may be dark but for an eighth
-    int candidates = !uneven ? 1 : lights[light].texture_layer == NO_LIGHT_TEXTURE ? 8 : 16;
-    for (int index = 0; index < candidates; index++) {
-        ArealightShadowRay one;
+    int candidates = !uneven ? 0 : lights[light].texture_layer == NO_LIGHT_TEXTURE ? 8 : 16;
+    int chosen = 0;
+    // At last the one that was chosen once more
+    for (int index = 0; index <= candidates; index++) {
         // Spread over the light: the sequence of the plastic number
-        vec2 place = fract(random + float(index) * vec2(0.75487767, 0.56984029));
-        if (arealight_draw_ray(outline, point.to_frame, space, place, one)) {
-            float factor = 1.0;
-            if (uneven) {
-                ArealightGpuLight record = lights[light];
-                vec3 to_light = record.center - point.position;
-                float height = dot(record.normal, to_light) / dot(record.normal, one.direction);
-                one.distance = through ? clamp(height, 0.0, 1e30) : one.distance;
-                vec3 offset = one.distance * one.direction;
-                factor = shaping_factor(record, record.normal, point.position, offset)
-                    * image_factor(load_image(record), offset - to_light);
-                factor = through && !is_in_light(record, offset - to_light) ? 0.0 : factor;
-            }
-            if (factor > 0.0 && arealight_choose(choice, sum, factor)) {
-                ray = one;
-                is_drawn = true;
+        vec2 place = fract(random + float(index < candidates ? index : chosen) * vec2(0.75487767, 0.56984029));
+        is_drawn = arealight_draw_ray(outline, point.to_frame, space, place, ray);
+        if (uneven && is_drawn) {
+            ArealightGpuLight record = lights[light];
+            vec3 to_light = record.center - point.position;
+            float height = dot(record.normal, to_light) / dot(record.normal, ray.direction);
+            ray.distance = through ? clamp(height, 0.0, 1e30) : ray.distance;
+            vec3 offset = ray.distance * ray.direction;
+            float factor = shaping_factor(record, record.normal, point.position, offset)
+                * image_factor(load_image(record), offset - to_light);
+            factor = through && !is_in_light(record, offset - to_light) ? 0.0 : factor;
+            if (index < candidates && factor > 0.0 && arealight_choose(choice, sum, factor)) {
+                chosen = index;
             }
         }
     }
-    return is_drawn;
+    return is_drawn && (!uneven || sum > 0.0);
 }
 
 // What a ray finds: in x 1 if it arrives, else 0, and the width of the penumbra in y.
