@@ -166,7 +166,8 @@ bool draw_ray(uint pick, ArealightShadowOutline outline, ArealightPoint point, m
     // At last the one that was chosen once more
     for (int index = 0; index <= candidates; index++) {
         // Spread over the light: the sequence of the plastic number
-        vec2 place = fract(random + float(index < candidates ? index : chosen) * vec2(0.75487767, 0.56984029));
+        int number = index < candidates ? index : chosen;
+        vec2 place = fract(random + float(number) * vec2(0.75487767, 0.56984029));
         is_drawn = arealight_draw_ray(outline, point.to_frame, space, place, ray);
         if (uneven && is_drawn) {
             ArealightGpuLight record = lights[light];
