@@ -99,6 +99,13 @@ impl From<LobeCount> for SpecularLobes {
     }
 }
 
+/// The level to take for surfaces of these effects (docs/cost.md): of brushed metal, thin films or coats half
+/// vectors.
+pub fn level_for(surfaces: Effects) -> Level {
+    let bent = Effects::ANISOTROPY | Effects::THIN_FILM | Effects::COAT;
+    if surfaces.intersects(bent) { Level::HalfVectors } else { Level::default() }
+}
+
 /// How the part of a texture that a lobe sees is looked up.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub enum Lookup {
@@ -123,12 +130,9 @@ impl QualityArguments {
         self.within(self.level.unwrap_or_default())
     }
 
-    /// The level chosen, or the one to take for surfaces of these effects (docs/cost.md): of brushed metal,
-    /// thin films or coats half vectors.
+    /// The level chosen, or the one that fits surfaces of these effects.
     pub fn level_of(&self, surfaces: Effects) -> Level {
-        let bent = Effects::ANISOTROPY | Effects::THIN_FILM | Effects::COAT;
-        let fits = if surfaces.intersects(bent) { Level::HalfVectors } else { Level::default() };
-        self.level.unwrap_or(fits)
+        self.level.unwrap_or_else(|| level_for(surfaces))
     }
 
     /// A level with what was chosen within it.

@@ -73,6 +73,12 @@ impl Scene {
     pub fn effects(&self) -> Effects {
         required_effects(self).iter().map(|one| one.effect).collect()
     }
+
+    /// Of those what a pass has to handle of surfaces: it has a lobe also for a scene without one.
+    pub fn surfaces(&self) -> Effects {
+        let required = self.effects() & Effects::SURFACES;
+        if required.is_empty() { Effects::DIFFUSE } else { required }
+    }
 }
 
 /// Textures multiply: a metalness texture can make any metal a dielectric somewhere.

@@ -203,11 +203,7 @@ impl SurfaceChoice {
     /// The set for `scene`. One that a surface needs more than gives another picture than the scene's: it is
     /// for the user to state, and said.
     fn surfaces(self, scene: &Scene, path: &Path) -> Effects {
-        let mut required = scene.effects() & Effects::SURFACES;
-        // A pass has a lobe, also for a scene without a surface
-        if required.is_empty() {
-            required = Effects::DIFFUSE;
-        }
+        let required = scene.surfaces();
         let Self::Stated(surfaces) = self else { return required };
         for effect in arealight_scene::required_effects(scene) {
             if (required - surfaces).contains(effect.effect) {

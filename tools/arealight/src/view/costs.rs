@@ -31,7 +31,7 @@ const COST_RUNS: usize = 3;
 impl Viewer<'_> {
     /// What is tried for costs: each level, and every effect but one.
     fn trials(&self) -> Vec<(String, Effects, Quality)> {
-        let surfaces = self.surfaces();
+        let surfaces = self.scene().surfaces();
         let levels = Level::ALL.map(|level| (level.name().to_owned(), surfaces, level.quality()));
         let others = (surfaces - Effects::MODEL).iter().filter_map(|effect| {
             let left = without(surfaces, effect);

@@ -3,6 +3,7 @@
 use super::lamps::{self, Edit};
 use super::orbit::Orbit;
 use crate::picture::MAX_STOPS;
+use crate::quality::level_for;
 use arealight::Level;
 use arealight_scene::{Camera, Scene, SceneFog};
 use std::str::FromStr;
@@ -184,7 +185,7 @@ impl State {
         let fog = scene.fog.unwrap_or(SceneFog { density, anisotropy: 0.3, albedo: 1.0 });
         Self {
             orbit: home,
-            level: Level::default(),
+            level: level_for(scene.surfaces()),
             mode: Mode::Picture,
             divider: 0.5,
             exposure,
@@ -344,11 +345,15 @@ mod tests {
 
     const ASPECT: f64 = 1.5;
 
-    fn shown() -> (Scene, State) {
-        let scene = Scene::from_bytes(include_bytes!("../../../../scenes/demo.glb"), "demo").unwrap();
+    fn first(glb: &[u8]) -> (Scene, State) {
+        let scene = Scene::from_bytes(glb, "scene").unwrap();
         let camera = scene.camera(None, ASPECT).unwrap();
         let state = State::new(&scene, &camera, 0.0, true);
         (scene, state)
+    }
+
+    fn shown() -> (Scene, State) {
+        first(include_bytes!("../../../../scenes/demo.glb"))
     }
 
     fn keys(names: &[&str]) -> State {
@@ -362,6 +367,9 @@ mod tests {
     #[test]
     fn keys_choose_what_is_shown() {
         assert_eq!(keys(&["4"]).level, Level::HalfVectors);
+        // Brushed metal begins there
+        let (_, brushed) = first(include_bytes!("../../../../scenes/product.glb"));
+        assert_eq!((shown().1.level, brushed.level), (Level::Exact, Level::HalfVectors));
         assert!(
             Level::ALL.iter().enumerate().all(|(i, level)| keys(&[&(i + 1).to_string()]).level == *level)
         );

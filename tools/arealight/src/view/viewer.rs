@@ -270,12 +270,6 @@ impl<'a> Viewer<'a> {
         Ok(())
     }
 
-    /// What the pass has to handle of the scene's surfaces.
-    pub(super) fn surfaces(&self) -> Effects {
-        let required = self.scene.effects() & Effects::SURFACES;
-        if required.is_empty() { Effects::DIFFUSE } else { required }
-    }
-
     fn draw_ours(&mut self, seen: &Seen, level: Level) -> Result<(), EngineError> {
         let of = (seen.clone(), level);
         let before = self.ours.take().filter(|drawn| drawn.of == of);
@@ -330,13 +324,13 @@ impl<'a> Viewer<'a> {
     }
 
     fn shade(&mut self, level: Level) -> Result<Option<Duration>, EngineError> {
-        self.renderer.shade(self.surfaces(), level.quality())
+        self.renderer.shade(self.scene.surfaces(), level.quality())
     }
 
     fn shade_with_shadows(&mut self, level: Level, seed: u32) -> Result<Option<Duration>, EngineError> {
         let Shadows::Rays(shadow_rays, filter) = Shadows::for_samples(1) else { return self.shade(level) };
         if self.shadowed.as_ref().is_none_or(|(of, _)| *of != level) {
-            let (quality, surfaces) = (level.quality(), self.surfaces());
+            let (quality, surfaces) = (level.quality(), self.scene.surfaces());
             let options = ShadeOptions { quality, surfaces, shadow_rays, ..ShadeOptions::default() };
             let blockers = self.renderer.blockers(&self.buffers)?;
             let views = self.renderer.shadowed_passes(&blockers, options, filter)?;
@@ -377,7 +371,7 @@ impl<'a> Viewer<'a> {
             _ => Means::new(pixels),
         };
         if truth.samples() < MOST_SAMPLES {
-            let coupled = self.surfaces().contains(Effects::COUPLED);
+            let coupled = self.scene.surfaces().contains(Effects::COUPLED);
             let reference = Reference { samples, seed: truth.samples(), shadows: seen.shadows, coupled };
             self.begin()?;
             self.renderer.reference(reference, |_| {})?;
@@ -412,7 +406,7 @@ impl<'a> Viewer<'a> {
             other,
             emission: &self.emission,
             times: [self.visibility, self.ours.as_ref().and_then(|drawn| drawn.time)],
-            effects: self.surfaces() | self.renderer.lights().effects,
+            effects: self.scene.surfaces() | self.renderer.lights().effects,
             truth: truth.map(|truth| (truth.samples(), truth.distance(ours, |i| self.is_lit(i)))),
             yardstick: yardstick_for(&self.scene).0,
             costs: if state.costs { self.costs(seen, truth) } else { vec![] },
