@@ -5,10 +5,7 @@ use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
 use crate::lights::{read_flag, read_lights};
 use crate::pass::{sampled, set_layout};
-use crate::types::{
-    ArealightImage, ArealightLight, ArealightMemory, ArealightTextureNeeds, ArealightTextureOptions,
-    ArealightTextureSetup, ArealightTextureUpdate,
-};
+use crate::types::{ArealightImage, ArealightLight, ArealightMemory, ArealightSetLayout};
 use crate::{arguments, handles};
 use arealight::{PyramidSize, TexturePart, Wrap};
 use arealight_vk::ash::vk::{self, Handle as _};
@@ -16,6 +13,85 @@ use arealight_vk::{LightTextures, Resource, TextureUpdate};
 use glam::DVec2;
 use std::ffi::c_void;
 use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The lights' images: all of one size, each with its mips and with what lobes see of it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ArealightTextureOptions {
+    /// Width and height in texels: a power of two from 64 to 4096. Images of other sizes are resampled.
+    pub side: u32,
+    /// How many images, from 1 on.
+    pub layers: u32,
+}
+
+/// What light textures need of the host.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ArealightTextureNeeds {
+    /// Of the image.
+    pub memory: ArealightMemory,
+    /// Of a set for a level.
+    pub level_set: ArealightSetLayout,
+    /// Of a set for an image that is loaded.
+    pub source_set: ArealightSetLayout,
+    /// How many sets there are for levels.
+    pub level_set_count: u32,
+    /// 0
+    pub reserved: u32,
+}
+
+/// What light textures are given once.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ArealightTextureSetup {
+    /// VkDeviceMemory for ArealightTextureNeeds.memory; it is freed after arealight_textures_destroy.
+    pub memory: u64,
+    /// Where in it.
+    pub memory_offset: u64,
+    /// VkDescriptorSet each, made with ArealightTextureNeeds.level_set. They live as long as the textures.
+    pub level_sets: *const u64,
+    /// ArealightTextureNeeds.level_set_count.
+    pub level_set_count: u32,
+    /// 0
+    pub reserved: u32,
+    /// VkCommandBuffer that is being recorded, outside a render pass, on a queue with graphics or compute.
+    pub command_buffer: *mut c_void,
+}
+
+/// An image that replaces a layer. Zero in `part_size` is the whole image, in `divisor` and `aspect` 1.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ArealightTextureUpdate {
+    /// VkDescriptorSet that arealight_textures_write_source_set pointed at the image.
+    pub source_set: u64,
+    /// The texture coordinates of the image that the layer shows at (0, 0), the outer corner of its first
+    /// texel.
+    pub part_low: [f64; 2],
+    /// What is added to them at (1, 1); positive.
+    pub part_size: [f64; 2],
+    /// Which layer.
+    pub layer: u32,
+    /// The image's width in texels, from 1 to 4096.
+    pub source_width: u32,
+    /// Its height.
+    pub source_height: u32,
+    /// 1: it holds sRGB in a format that does not decode by itself, such as rgba8.
+    pub decode_srgb: u32,
+    /// What is beyond 0 to 1 along u: one of AREALIGHT_WRAP_*.
+    pub wrap_u: u32,
+    /// Along v.
+    pub wrap_v: u32,
+    /// What texels are divided by, where they are brighter or dimmer than half floats hold well (6e-5 to
+    /// 65,504); from 1e-30 to 1e30. The radiance of lights that show the layer is to be multiplied by it.
+    pub divisor: f32,
+    /// How many times as wide as high the light is that shows the layer, as texture coordinates run over it;
+    /// from 1/1024 to 1024.
+    pub aspect: f32,
+    /// 1: a disk or ellipse shows it; what is beyond the ellipse that touches its edges counts nothing.
+    pub is_ellipse: u32,
+    /// 0
+    pub reserved: u32,
+}
 
 /// The images of lights on a device, filtered for shading.
 pub struct ArealightTextures {
