@@ -4,8 +4,8 @@
 
 // Multiplies each channel of the unshadowed radiance with what of it arrives, of each lobe apart: the mean of
 // the pixel's rays, or of those of its neighbours in the same plane too, over a part of the penumbra that it
-// is in. Where no neighbour has a ray that is hidden nothing is filtered, nor at contact, whose penumbra has
-// no width.
+// is in. Where no ray is hidden that a workgroup's pixels reach nothing is filtered, nor at contact, whose
+// penumbra has no width.
 //
 // Source of the filter's width: Fernando 2005 (percentage-closer soft shadows), with blockers found by the
 // rays themselves.
@@ -117,27 +117,27 @@ float weight_of(Center center, int i, vec3 offset, float exponent) {
     return likeness(offset, unpack_normal(patch_normals[i]), center.normal, center.plane_scale, exponent);
 }
 
-// In x the width of the penumbra that a pixel is in, over the distance to the camera; less than 0 where no
-// neighbour has a ray that is hidden. In y how far pixels are apart. By every second neighbour, those that
-// touch the pixel among them.
+// In x the width of the penumbra that a pixel is in, over the distance to the camera; in y how far pixels are
+// apart. By every fourth neighbour, and then those that touch the pixel.
 vec2 search(Center center) {
+    const int FOURTHS = REACH * REACH;
     vec2 sum = vec2(0.0);
     float spacing = 3e38;
-    for (int y = -REACH; y <= REACH; y++) {
-        for (int x = -REACH + 1 - (y & 1); x <= REACH; x += 2) {
-            int i = center.place + y * PATCH + x;
-            if (patch_normals[i] != 0u) {
-                vec3 offset = patch_texels[i].xyz - center.position;
-                float exponent = float(x * x + y * y) * (0.5 / (SEARCH_WIDTH * SEARCH_WIDTH));
-                vec2 found = unpackHalf2x16(floatBitsToUint(patch_texels[i].w));
-                sum += weight_of(center, i, offset, exponent) * found;
-                if (abs(x) + abs(y) == 1) {
-                    spacing = min(spacing, length(offset));
-                }
-            }
+    for (int number = 0; number < FOURTHS + 4; number++) {
+        int side = (number & 2) - 1;
+        ivec2 touching = (number & 1) == 0 ? ivec2(side, 0) : ivec2(0, side);
+        bool touches = number >= FOURTHS;
+        ivec2 at = touches ? touching : 2 * ivec2(number % REACH, number / REACH) + 1 - REACH;
+        int i = center.place + at.y * PATCH + at.x;
+        if (patch_normals[i] != 0u) {
+            vec3 offset = patch_texels[i].xyz - center.position;
+            float exponent = float(at.x * at.x + at.y * at.y) * (0.5 / (SEARCH_WIDTH * SEARCH_WIDTH));
+            vec2 found = unpackHalf2x16(floatBitsToUint(patch_texels[i].w));
+            sum += weight_of(center, i, offset, exponent) * found;
+            spacing = touches ? min(spacing, length(offset)) : spacing;
         }
     }
-    return vec2(sum.x > 1e-6 ? sum.y / sum.x : -1.0, spacing);
+    return vec2(sum.y / max(sum.x, 1e-6), spacing);
 }
 
 // The mean of the colours of a pixel and its neighbours, by a Gaussian of this standard deviation over
@@ -171,9 +171,6 @@ vec3 filtered(float rays, vec3 specular) {
     vec3 position = patch_texels[i].xyz;
     Center center = Center(i, position, unpack_normal(patch_normals[i]), plane_scale(position));
     vec2 found = search(center);
-    if (found.x < 0.0) {
-        return vec3(1.0);
-    }
     float penumbra = found.x * camera_distance(position);
     float deviation = max(PENUMBRA_PART * penumbra, LEAST_WIDTH * found.y) * pow(rays, -1.0 / 3.0);
     int reach = int(ceil(min(MEAN_END * deviation / max(found.y, 1e-37), float(REACH))));
