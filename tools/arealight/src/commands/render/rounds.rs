@@ -11,7 +11,7 @@ use std::time::Duration;
 
 /// The most rounds.
 pub const MOST_ROUNDS: u32 = 64;
-/// Rays a sample of rounds after the first: four cost two thirds more than one.
+/// Rays a sample of rounds after the first: four take less than twice the time of one.
 const RAYS: u32 = 4;
 /// Samples to a side of a tile, which is done when its own noise is low.
 const TILE: u32 = 96;
