@@ -211,7 +211,8 @@ impl<'a> Frame<'a> {
         let fill_hidden = culled.is_none();
         let options = MediumOptions { least_lights, fill_hidden, ..MediumOptions::default() };
         let [columns, rows] = self.options.size.map(|side| side.div_ceil(8));
-        let view = self.renderer.fog_view(&self.buffers, [columns, rows, 64], (options, None))?;
+        let blockers = self.renderer.blockers(&self.buffers)?;
+        let view = self.renderer.fog_view(&blockers, [columns, rows, 64], (options, None))?;
         let fog = Fog {
             density: 0.02,
             albedo: Vec3::ONE,

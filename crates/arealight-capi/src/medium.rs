@@ -115,7 +115,7 @@ unsafe fn create(
         let shade = shade_options(arguments::read(options, "options")?)?;
         let medium = arguments::read(medium, "medium")?;
         let options = medium_options(shade, medium)?;
-        let (module, host_set) = host_module(&medium.module)?;
+        let (module, host_set) = host_module(&medium.module, true)?;
         let pass = MediumPass::new(arealight.context(), MediumPassInfo { options, module, host_set })?;
         arguments::write(out, handles::give(ArealightMediumPass { pass }), "out")
     }

@@ -49,15 +49,21 @@ pub unsafe extern "C" fn arealight_pass_create(
 /// A module of the host's, if it has one, and the layout of set 1.
 pub(crate) type HostModule = (Option<Vec<u32>>, Option<vk::DescriptorSetLayout>);
 
+/// What was given of a module; `reads_set`: of a pass of rays, whose module reads set 1.
+///
 /// # Safety
 /// The pointer is null or valid.
-pub(crate) unsafe fn host_module(module: &ArealightModule) -> Result<HostModule, Failure> {
+pub(crate) unsafe fn host_module(module: &ArealightModule, reads_set: bool) -> Result<HostModule, Failure> {
     let ArealightModule { words, size, host_set_layout } = *module;
     if words.is_null() {
         return Ok(HostModule::default());
     }
     if !size.is_multiple_of(4) {
         return Err(Failure::argument(format!("module.size: {size} bytes are no whole words of SPIR-V")));
+    }
+    arguments::refuse_null([(reads_set && host_set_layout == 0, "module.host_set_layout")])?;
+    if !reads_set && host_set_layout != 0 {
+        return Err(Failure::argument("module.host_set_layout: must be 0, since shading reads set 0 alone"));
     }
     // SAFETY: the same contract.
     let words = unsafe { arguments::array(words, size / 4, "module.words") }?.to_vec();
@@ -84,7 +90,7 @@ unsafe fn create(
         other => return Err(Failure::argument(format!("options.descriptors: {other} must be from 0 to 2"))),
     };
     // SAFETY: as above.
-    let (module, host_set) = unsafe { host_module(&options.module) }?;
+    let (module, _) = unsafe { host_module(&options.module, false) }?;
     let tiles = tile_options(options);
     if tiles.is_some() && module.is_some() {
         let why = "must be 0, since tiles are not classified by a G-buffer of the host's own";
@@ -95,7 +101,6 @@ unsafe fn create(
         table_size: arealight.table_size(),
         descriptors,
         module,
-        host_set,
         ..shade_options(options)?.into()
     };
     // SAFETY: the host vouches for the module, and says that its device has the extension.

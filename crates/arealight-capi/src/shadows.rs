@@ -143,7 +143,7 @@ unsafe fn create(
         let arealight = handles::borrow(arealight, "arealight")?;
         let options = shade_options(arguments::read(options, "options")?)?;
         let shadows = arguments::read(shadows, "shadows")?;
-        let (module, host_set) = host_module(&shadows.module)?;
+        let (module, host_set) = host_module(&shadows.module, true)?;
         let shadows = shadow_options(shadows)?;
         let info = ShadowPassInfo { options, shadows, module, host_set };
         let pass = ShadowPass::new(arealight.context(), info)?;

@@ -5,12 +5,11 @@ use crate::error::{Error, VulkanCall};
 use ash::vk;
 use std::ops::Range;
 
-/// What an image is made of: one sample a texel.
+/// What an image is made of: one sample a texel; with several layers it is seen as an array.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ImageInfo {
     pub(crate) name: &'static str,
     pub(crate) image_type: vk::ImageType,
-    pub(crate) view_type: vk::ImageViewType,
     pub(crate) format: vk::Format,
     pub(crate) extent: [u32; 3],
     pub(crate) levels: u32,
@@ -79,9 +78,10 @@ impl Image {
 
     /// A view of some levels of every layer.
     fn make_view(&self, levels: Range<u32>) -> Result<vk::ImageView, Error> {
+        let of_one = vk::ImageViewType::from_raw(self.info.image_type.as_raw());
         let info = vk::ImageViewCreateInfo::default()
             .image(self.raw)
-            .view_type(self.info.view_type)
+            .view_type(if self.info.layers > 1 { vk::ImageViewType::TYPE_2D_ARRAY } else { of_one })
             .format(self.info.format)
             .subresource_range(color_range(levels, self.info.layers));
         // SAFETY: the image is ours and has memory.

@@ -94,7 +94,6 @@ impl LightTextures {
         let info = ImageInfo {
             name: "light textures",
             image_type: vk::ImageType::TYPE_2D,
-            view_type: vk::ImageViewType::TYPE_2D_ARRAY,
             format: FORMAT,
             extent: [side, side, 1],
             levels: size.levels(),

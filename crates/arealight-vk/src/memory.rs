@@ -146,7 +146,6 @@ impl StoredImage {
         let info = ImageInfo {
             name: "image",
             image_type,
-            view_type: vk::ImageViewType::from_raw(image_type.as_raw()), // of one layer
             format,
             extent,
             levels: 1,

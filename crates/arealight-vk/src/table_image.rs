@@ -70,7 +70,6 @@ impl TableImage {
         let info = ImageInfo {
             name: "table",
             image_type: vk::ImageType::TYPE_2D,
-            view_type: vk::ImageViewType::TYPE_2D_ARRAY,
             format: format.vulkan(),
             extent: [table.size(), table.size(), 1],
             levels: 1,

@@ -3,7 +3,7 @@
 use arealight::Blockers;
 use arealight_capi::{
     AREALIGHT_SHADOW_FILTER_GATHER, ArealightBlockerArrays, ArealightBuffer, ArealightFrame, ArealightImage,
-    ArealightMediumFrame, ArealightMediumOptions, ArealightMediumResources, ArealightPass,
+    ArealightMediumFrame, ArealightMediumOptions, ArealightMediumResources, ArealightModule, ArealightPass,
     ArealightPassOptions, ArealightResources, ArealightResult, ArealightSetLayout, ArealightShadowFrame,
     ArealightShadowOptions, ArealightShadowPass, ArealightShadowResources, arealight_blockers_create,
     arealight_blockers_destroy, arealight_blockers_read, arealight_medium_pass_create,
@@ -77,12 +77,15 @@ impl<'a> CPasses<'a> {
         unsafe {
             let arealight = library.arealight;
             good(arealight_pass_create(arealight, &raw const options, &raw mut shade));
-            good(arealight_shadow_pass_create(
-                arealight,
-                &raw const options,
-                &raw const shadows,
-                &raw mut shadow,
-            ));
+            let mut create = |shadows: *const _| {
+                arealight_shadow_pass_create(arealight, &raw const options, shadows, &raw mut shadow)
+            };
+            // A module of the host's reads set 1
+            let words = [0_u32; 4];
+            let module = ArealightModule { words: words.as_ptr(), size: 16, host_set_layout: 0 };
+            let refusal = create(&ArealightShadowOptions { module, ..shadows });
+            refused(refusal, ArealightResult::ErrorArgument, "module.host_set_layout: is null");
+            good(create(&raw const shadows));
         }
         Self { engine, library, shade, shadow }
     }

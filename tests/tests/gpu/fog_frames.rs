@@ -46,7 +46,7 @@ fn add_fog(
     (samples, shadows, seed): (u32, bool, u32),
 ) {
     let options = MediumOptions { samples, shadow_rays: shadows, ..MediumOptions::default() };
-    let view = renderer.fog_view(buffers, froxels, (options, None)).unwrap();
+    let view = renderer.fog_view(&renderer.blockers(buffers).unwrap(), froxels, (options, None)).unwrap();
     renderer.add_fog(&view, fog, seed).unwrap();
 }
 
@@ -202,7 +202,9 @@ fn lists_and_hidden_froxels_change_no_pixel_beyond_what_it_may_lose() {
         let fog = Fog { anisotropy, ..FOG };
         let with = |fog: Fog, options: MediumOptions| {
             picture(&engine, &scene, |renderer, buffers| {
-                let view = renderer.fog_view(buffers, froxels, (options, None)).unwrap();
+                let view = renderer
+                    .fog_view(&renderer.blockers(buffers).unwrap(), froxels, (options, None))
+                    .unwrap();
                 renderer.add_fog(&view, &fog, 0).unwrap();
             })
         };
@@ -254,7 +256,8 @@ fn an_image_of_an_even_medium_is_that_medium() {
         let options = MediumOptions { by_image, ..MediumOptions::default() };
         let image = by_image.then(|| Resource::sampled(medium.view()));
         picture(&engine, &scene, |renderer, buffers| {
-            let view = renderer.fog_view(buffers, FROXELS, (options, image)).unwrap();
+            let view =
+                renderer.fog_view(&renderer.blockers(buffers).unwrap(), FROXELS, (options, image)).unwrap();
             renderer.add_fog(&view, &fog, 0).unwrap();
         })
     };

@@ -298,7 +298,8 @@ impl<'a> Viewer<'a> {
             let [columns, rows] = self.size.map(|side| side.div_ceil(8));
             if self.fogged.as_ref().is_none_or(|(shadows, _)| *shadows != of.0.shadows) {
                 let options = MediumOptions { shadow_rays: of.0.shadows, ..MediumOptions::default() };
-                let view = self.renderer.fog_view(&self.buffers, [columns, rows, 64], (options, None))?;
+                let blockers = self.renderer.blockers(&self.buffers)?;
+                let view = self.renderer.fog_view(&blockers, [columns, rows, 64], (options, None))?;
                 self.fogged = Some((of.0.shadows, view));
             }
             if let Some((_, view)) = &self.fogged {

@@ -4,7 +4,7 @@ use super::shadowed::BlockerBuffers;
 use crate::host::{DescriptorPool, Image, ImageDescription, Usage};
 use crate::{EngineError, Kept, SceneRenderer};
 use arealight::plan::MediumOptions;
-use arealight_scene::{Camera, Scene, SceneBuffers, SceneFog};
+use arealight_scene::{Camera, Scene, SceneFog};
 use arealight_tool_kernels::gpu::MediumReferenceConstants;
 use arealight_tool_kernels::kernels::{REFERENCE_MEDIUM, SHADOWS};
 use arealight_vk::{MediumFrame, MediumPass, MediumPassInfo, MediumResources, Resource};
@@ -62,7 +62,7 @@ impl SceneRenderer<'_> {
     /// [`EngineError`] says why the device fails.
     pub fn fog_view(
         &self,
-        scene: &SceneBuffers,
+        blockers: &Rc<BlockerBuffers>,
         froxels: [u32; 3],
         (options, medium): (MediumOptions, Option<Resource>),
     ) -> Result<FogView, EngineError> {
@@ -78,7 +78,6 @@ impl SceneRenderer<'_> {
         let (extent, format) = ([width, height], MediumPass::FORMAT);
         let volume =
             host.volume(&ImageDescription { name: "froxels", extent, layers: 1, format, usage }, depth)?;
-        let blockers = self.blockers(scene)?;
         let resources = MediumResources {
             froxels: Resource::stored(volume.view()),
             medium,
@@ -93,7 +92,7 @@ impl SceneRenderer<'_> {
             set
         };
         pass.prepare(self.lights)?;
-        Ok(FogView { froxels, volume, set, _pool: pool, _blockers: blockers, pass })
+        Ok(FogView { froxels, volume, set, _pool: pool, _blockers: Rc::clone(blockers), pass })
     }
 
     /// Puts a fog before the picture, with random numbers of `seed`.

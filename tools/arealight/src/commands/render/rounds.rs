@@ -73,8 +73,7 @@ impl Tile {
         [corner, [end[0] - corner[0], end[1] - corner[1]]]
     }
 
-    /// Finds the noise that is left by that of all rounds so far: the one that happens to be least must not
-    /// end them.
+    /// Finds the noise that is left, by what all rounds found: one that happens to find little ends nothing.
     fn estimate(&mut self, supersample: usize, stops: f32) {
         let rays = f64::from(self.means.samples());
         let noise = self.means.noise(self.size[0] as usize, supersample, stops);
@@ -138,10 +137,7 @@ impl<'a> Rounds<'a> {
             let mut noisy: Vec<_> = tiles.iter_mut().filter(|tile| tile.is_noisier(self.most)).collect();
             let (mut done, count) = (0, noisy.len());
             for tiles in noisy.chunks_mut(cells.count()) {
-                bar.set_message(format!(
-                    "bands, shadows of parts {done} to {} of {count}",
-                    done + tiles.len()
-                ));
+                bar.set_message(format!("bands, shadows of {count} noisy parts, {done} done"));
                 let one = self.converge(renderer, (cells, &mut passes), (tiles, rounds))?;
                 took = took.zip(one).map(|(all, one)| all + one);
                 done += tiles.len();

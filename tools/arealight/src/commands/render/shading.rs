@@ -37,8 +37,8 @@ const MOST_BANDS: u32 = 1 << 16;
 
 impl Outcome {
     /// A picture of `size` without a row yet.
-    fn begin(size: [u32; 2]) -> Self {
-        let picture = picture_of(size, vec![]);
+    fn begin([width, height]: [u32; 2]) -> Self {
+        let picture = Picture { width, height, pixels: vec![] };
         let none = Some(Duration::ZERO);
         Self {
             visibility: none,
@@ -136,7 +136,10 @@ pub fn render(
         let mut found = colors(&mut renderer)?;
         let stops = || match arguments.exposure {
             Exposure::Stops(stops) => stops,
-            Exposure::Auto => picture_of(in_band, found.clone()).auto_stops(&lamps, most_stops),
+            Exposure::Auto => {
+                let [width, height] = in_band;
+                Picture { width, height, pixels: found.clone() }.auto_stops(&lamps, most_stops)
+            }
         };
         if let Some(rounds) = Rounds::of(arguments, &view, in_band, stops) {
             let converged = rounds.go_on(&renderer, (&lamps, &found), &bar)?;
@@ -153,7 +156,8 @@ pub fn render(
             sum.rays = [f64::from(shadows.options.shadow_rays); 2];
         }
         if let Some(fog) = &fog {
-            let took = add_fog(&mut renderer, &buffers, (fog, in_band, seed), arguments)?;
+            let took =
+                add_fog(&mut renderer, (&buffers, view.shadows.as_ref()), (fog, in_band, seed), arguments)?;
             sum.fog = took.map(|took| sum.fog.unwrap_or_default() + took);
             found = colors(&mut renderer)?;
         }
@@ -168,10 +172,6 @@ pub fn render(
         Exposure::Stops(stops) => stops,
     };
     Ok(sum)
-}
-
-fn picture_of([width, height]: [u32; 2], pixels: Vec<Vec3>) -> Picture {
-    Picture { width, height, pixels }
 }
 
 /// The most stops of [`Exposure::Auto`]: ten more than a white sheet in the scene's middle needs that faces
@@ -193,21 +193,22 @@ fn most_stops(scene: &Scene) -> f32 {
 /// Puts a fog before what a renderer shaded, as the arguments say.
 fn add_fog(
     renderer: &mut SceneRenderer<'_>,
-    scene: &SceneBuffers,
+    (scene, shadows): (&SceneBuffers, Option<&ViewShadows>),
     (fog, size, seed): (&Fog, [u32; 2], u32),
     arguments: &Arguments,
 ) -> Result<Option<Duration>, EngineError> {
-    let shadows = arguments.casts_shadows();
+    let shadow_rays = arguments.casts_shadows();
     if let Some(samples) = arguments.reference {
         let samples = arguments.samples_a_subpixel(samples);
-        return renderer.fog_reference(fog, samples, (shadows, seed), |_| ());
+        return renderer.fog_reference(fog, samples, (shadow_rays, seed), |_| ());
     }
     let [columns, rows] = size.map(|side| side.div_ceil(8 * arguments.supersample));
     // doc: medium options
     let samples = arguments.fog.fog_samples;
-    let options = MediumOptions { shadow_rays: shadows, samples, ..MediumOptions::default() };
+    let options = MediumOptions { shadow_rays, samples, ..MediumOptions::default() };
     // doc end
-    let view = renderer.fog_view(scene, [columns, rows, 64], (options, None))?;
+    let blockers = shadows.map_or_else(|| renderer.blockers(scene), |of| Ok(Rc::clone(&of.blockers)))?;
+    let view = renderer.fog_view(&blockers, [columns, rows, 64], (options, None))?;
     renderer.add_fog(&view, fog, seed)
 }
 
