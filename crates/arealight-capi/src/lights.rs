@@ -210,10 +210,10 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
     };
     let textured = read_flag(light.textured, &field("textured"))?;
     // SAFETY: as above.
-    let (name, pairs) = unsafe { (read_name(light.name), read_pairs(light, &field)?) };
+    let (name, numbers) = unsafe { (read_name(light.name), read_profile(light, &field)?) };
     let refused = |fault| LightError { index, name: name.clone(), fault };
-    let profile =
-        pairs.map(|pairs| Profile::new(&pairs, light.profile_levels)).transpose().map_err(refused)?;
+    let rows = numbers.map(|numbers| numbers.chunks(row_length(light)).collect::<Vec<_>>());
+    let profile = rows.map(|rows| Profile::new(&rows, light.profile_levels)).transpose().map_err(refused)?;
     let has_opening = read_flag(light.has_opening, &field("has_opening"))?;
     let [opening_center, opening_u, opening_v] =
         [light.opening_center, light.opening_axis_u, light.opening_axis_v].map(DVec3::from_array);
@@ -234,18 +234,23 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
     Ok(made)
 }
 
-/// The pairs of a light's profile, where it has one.
+/// Numbers in a row of a light's profile.
+fn row_length(light: &ArealightLight) -> usize {
+    1 + light.profile_azimuth_count.max(1) as usize
+}
+
+/// The rows of a light's profile, where it has one.
 ///
 /// # Safety
 /// As [`read_light`].
-unsafe fn read_pairs(
-    light: &ArealightLight,
+unsafe fn read_profile<'a>(
+    light: &'a ArealightLight,
     field: &impl Fn(&'static str) -> String,
-) -> Result<Option<Vec<[f64; 2]>>, Failure> {
-    let count = 2 * light.profile_pair_count as usize;
+) -> Result<Option<&'a [f64]>, Failure> {
+    let count = (light.profile_row_count as usize).saturating_mul(row_length(light));
     // SAFETY: the same contract.
     let numbers = unsafe { arguments::array(light.profile, count, &field("profile")) }?;
-    Ok((!light.profile.is_null()).then(|| numbers.as_chunks().0.to_vec()))
+    Ok((!light.profile.is_null()).then_some(numbers))
 }
 
 /// The most vertices of a light, its holes' among them: a count beyond it is not what the host meant.

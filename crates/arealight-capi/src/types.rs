@@ -229,10 +229,14 @@ pub struct ArealightLight {
     pub radius: f64,
     /// Of a tube: one of AREALIGHT_TUBE_*.
     pub ends: u32,
-    /// How many pairs `profile` has.
-    pub profile_pair_count: u32,
-    /// Null, or of a disk or convex polygon: pairs of degrees from the front normal, rising from 0 to 90, and
-    /// a factor of the radiance, linear between them, 0 after the last.
+    /// How many rows `profile` has.
+    pub profile_row_count: u32,
+    /// How many factors a row has: 0 or 1 of a profile that is round about the front normal. More are at
+    /// azimuths that divide the circle evenly, from where the outline's first edge goes, or a disk's
+    /// `axis_u`, counter-clockwise as seen from behind.
+    pub profile_azimuth_count: u32,
+    /// Null, or of a disk or convex polygon: rows of degrees from the front normal, rising from 0 to 90, and
+    /// factors of the radiance, linear between them, 0 after the last row.
     pub profile: *const f64,
     /// Read only with `profile`: how many angles divide it, 1 to 180. Of 4 the error is 1 % on Lambert
     /// surfaces and 3 % on glossy ones, of 8 less than half of it.

@@ -56,6 +56,8 @@ pub struct RelativeLight {
     pub image: Option<ShownImage>,
     /// How it changes with the angle from the front.
     pub profile: Option<Profile>,
+    /// Where the profile's azimuth is 0, a direction in the light's plane.
+    pub azimuth: DVec3,
     /// What it is seen through, its center minus the shading point's position.
     pub opening: Option<Opening>,
 }
@@ -70,6 +72,7 @@ impl RelativeLight {
             two_sided: light.two_sided,
             image: None,
             profile: light.profile.clone(),
+            azimuth: light.shape.first_edge(),
             opening: light.opening.map(|it| it.moved(&DAffine3::from_translation(-position))),
         }
     }
@@ -142,7 +145,8 @@ fn uncoated_truth(
     });
     let shown = |direction| {
         let color = image.as_ref().map_or(DVec3::ONE, |image| image.color(direction));
-        let factor = light.profile.as_ref().map(|it| profiled::factor_in(it, &vertices, direction));
+        let azimuth = frame.to_surface(light.azimuth);
+        let factor = light.profile.as_ref().map(|it| profiled::factor_in(it, azimuth, &vertices, direction));
         color * factor.unwrap_or(1.0)
     };
     let signed = reflected(surface, &frame, &region, settings, shown);
@@ -347,6 +351,7 @@ pub fn ltc_on(
     let both_horizons = quality.horizon == Horizon::Both;
     let visible = if both_horizons { above_horizon(&seen) } else { seen.clone() };
     let image = light.image.as_ref().map(|image| image.in_frame(&frame));
+    let azimuth = frame.to_surface(light.azimuth);
     let lobe = |inverse: &DMat3, above_surface: f64| {
         // What is clipped at the surface's horizon is made up for, so that the albedo stays
         let share = if both_horizons { above_surface } else { 1.0 };
@@ -354,7 +359,7 @@ pub fn ltc_on(
             None => {
                 let signed = match &light.profile {
                     None => transformed_form_factor(inverse, &visible),
-                    Some(profile) => profiled::profiled(profile, &seen, &visible, inverse),
+                    Some(profile) => profiled::profiled((profile, azimuth), &seen, &visible, inverse),
                 };
                 // A profile may be brighter than 1
                 let most = light.profile.as_ref().map_or(1.0, Profile::greatest);

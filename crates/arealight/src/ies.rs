@@ -3,11 +3,14 @@
 use crate::Profile;
 use crate::light_fault::LightFault;
 use std::f64::consts::PI;
+use std::iter;
 
 /// The most angles of a file, vertical and horizontal each: twice what half a degree makes.
 const MOST_ANGLES: usize = 1440;
 /// The most bytes of a file.
 const MOST_BYTES: usize = 4 << 20;
+/// Azimuths of a profile that is not round.
+const AZIMUTHS: u32 = 72;
 /// A flat light as bright as it is seen: below this cosine what a file says is taken as that of this one.
 const LEAST_COSINE: f64 = 0.1;
 
@@ -39,7 +42,8 @@ pub enum IesError {
 pub struct IesProfile {
     /// Degrees from straight down, rising.
     pub vertical: Vec<f64>,
-    /// Azimuths in degrees, rising, from 0: to 0 where it is round, to 90 or 180 where the rest mirrors.
+    /// Azimuths in degrees, rising: from 0 to 0 where it is round, to 90 or 180, or from 90 to 270, where the
+    /// rest mirrors.
     pub horizontal: Vec<f64>,
     /// Candela, those of an azimuth together, with every multiplier.
     pub candela: Vec<f64>,
@@ -121,10 +125,12 @@ impl IesProfile {
         if low < 0.0 || high > 180.0 {
             return bad("vertical angles", format!("from {low} to {high}, of 0 to 180"));
         }
-        let span = horizontal[horizontal.len() - 1];
-        if horizontal[0] != 0.0 || ![0.0, 90.0, 180.0, 360.0].contains(&span) {
-            let message =
-                format!("from {} to {span}, where they go from 0 to 0, 90, 180 or 360", horizontal[0]);
+        let ends = [horizontal[0], horizontal[horizontal.len() - 1]];
+        if ![[0.0, 0.0], [0.0, 90.0], [0.0, 180.0], [0.0, 360.0], [90.0, 270.0]].contains(&ends) {
+            let [first, last] = ends;
+            let message = format!(
+                "from {first} to {last}, where they go from 0 to 0, 90, 180 or 360, or from 90 to 270"
+            );
             return Err(IesError::Unsupported { field: "horizontal angles", message });
         }
         let is_round_opening = sizes[0] < 0.0;
@@ -132,20 +138,21 @@ impl IesProfile {
         Ok(Self { vertical, horizontal, candela, opening, is_round_opening })
     }
 
-    /// Candela at an angle from straight down, of each azimuth's weight their mean; degrees. 0 where the file
-    /// says nothing.
-    pub fn mean_candela(&self, degrees: f64) -> f64 {
-        let rows = self.horizontal.len();
-        if rows == 1 {
-            return self.at(0, degrees);
-        }
-        // The mean over the azimuth, by trapezoids
-        let width = |row: usize| {
-            let next = self.horizontal[(row + 1).min(rows - 1)];
-            0.5 * (next - self.horizontal[row.saturating_sub(1)])
-        };
-        let span = self.horizontal[rows - 1];
-        (0..rows).map(|row| self.at(row, degrees) * width(row) / span).sum()
+    /// Candela at an angle from straight down and an azimuth, degrees; 0 where the file says nothing.
+    pub fn candela_at(&self, degrees: f64, azimuth: f64) -> f64 {
+        let rows = &self.horizontal;
+        let [first, last] = [rows[0], rows[rows.len() - 1]];
+        // What mirrors at the plane of its first and last azimuth, or at that and the one across
+        let turned = (azimuth - first).rem_euclid(360.0);
+        let turned = if last - first < 360.0 { turned.min(360.0 - turned) } else { turned };
+        let turned = if last - first == 90.0 { turned.min(180.0 - turned) } else { turned };
+        let azimuth = first + turned;
+        let next = rows.partition_point(|row| *row < azimuth).min(rows.len() - 1);
+        let before = next.saturating_sub(1);
+        let width = rows[next] - rows[before];
+        let part = if width > 0.0 { (azimuth - rows[before]) / width } else { 0.0 };
+        let [low, high] = [before, next].map(|row| self.at(row, degrees));
+        low + (high - low) * part
     }
 
     fn at(&self, row: usize, degrees: f64) -> f64 {
@@ -162,53 +169,58 @@ impl IesProfile {
         values[before] + (values[next] - values[before]) * part
     }
 
-    /// The lumens that it sends down: over the half that a flat light shines to.
-    pub fn lumens(&self) -> f64 {
-        half_sphere(|degrees| self.mean_candela(degrees) * 2.0 * PI)
+    /// The lumens that it sends down, over the half that a flat light shines to, and up.
+    pub fn lumens(&self) -> [f64; 2] {
+        let rows = &self.horizontal;
+        let last = rows.len() - 1;
+        // Of each azimuth's part of the circle, by trapezoids
+        let span = rows[last] - rows[0];
+        let width = |row: usize| 0.5 * (rows[(row + 1).min(last)] - rows[row.saturating_sub(1)]) / span;
+        let mean = |degrees: f64| match last {
+            0 => self.at(0, degrees),
+            _ => (0..=last).map(|row| self.at(row, degrees) * width(row)).sum(),
+        };
+        [0.0, 90.0].map(|from| half_sphere(|degrees| mean(from + degrees) * 2.0 * PI, from))
     }
 
-    /// How far a round profile is from it: the mean difference from the mean over the azimuth, in parts of
-    /// the lumens. 0 for a round one.
-    pub fn azimuth_error(&self) -> f64 {
-        let rows = self.horizontal.len();
-        let off = half_sphere(|degrees| {
-            let mean = self.mean_candela(degrees);
-            let sum: f64 = (0..rows).map(|row| (self.at(row, degrees) - mean).abs()).sum();
-            sum / rows as f64 * 2.0 * PI
-        });
-        off / self.lumens().max(1e-300)
-    }
-
-    /// The profile of a flat light that shines so, round about its front, and the light's luminance at a
-    /// factor of 1 times its area, in candela: the light of the area A has the radiance `candela / (683 A)`.
+    /// The profile of a flat light that shines so, and the light's luminance at a factor of 1 times its area,
+    /// in candela: the light of the area A has the radiance `candela / (683 A)`. Azimuths are those of
+    /// [`Profile::new`]: 0 along the first edge, counter-clockwise from above.
     /// It has the lumens that the file sends to the front; what it sends within 6 degrees of the light's
     /// plane, which a flat light cannot, it sends elsewhere.
     ///
     /// # Errors
     /// [`LightFault::BadProfile`] where nothing is sent to the front, and as [`Profile::new`].
-    pub fn round(&self, levels: u32) -> Result<(Profile, f64), LightFault> {
-        let bright = |degrees: f64| self.mean_candela(degrees) / degrees.to_radians().cos().max(LEAST_COSINE);
+    pub fn profile(&self, levels: u32) -> Result<(Profile, f64), LightFault> {
         let mut angles: Vec<f64> = (0..=180).map(|step| f64::from(step) * 0.5).collect();
         angles.extend(self.vertical.iter().filter(|angle| **angle < 90.0));
         angles.sort_by(f64::total_cmp);
         angles.dedup_by(|a, b| *a - *b < 1e-6);
-        let most = angles.iter().map(|angle| bright(*angle)).fold(0.0, f64::max);
-        let pairs: Vec<[f64; 2]> =
-            angles.iter().map(|angle| [*angle, bright(*angle) / most.max(1e-300)]).collect();
-        let profile = Profile::new(&pairs, levels)?;
+        let azimuths = if self.horizontal.len() == 1 { 1 } else { AZIMUTHS };
+        let row = |angle: &f64| {
+            let bright = |azimuth: u32| {
+                let azimuth = 360.0 * f64::from(azimuth) / f64::from(azimuths);
+                self.candela_at(*angle, azimuth) / angle.to_radians().cos().max(LEAST_COSINE)
+            };
+            iter::once(*angle).chain((0..azimuths).map(bright)).collect()
+        };
+        let mut rows: Vec<Vec<f64>> = angles.iter().map(row).collect();
+        let most = rows.iter().flat_map(|row| &row[1..]).copied().fold(1e-300, f64::max);
+        rows.iter_mut().flat_map(|row| &mut row[1..]).for_each(|factor| *factor /= most);
+        let profile = Profile::new(&rows, levels)?;
         // Of a luminance of 1 nit a square metre sends pi lumens
-        let candela = self.lumens() / (PI * profile.power());
+        let candela = self.lumens()[0] / (PI * profile.power());
         Ok((profile, candela))
     }
 }
 
-/// The integral over the lower half sphere of what depends on the angle, in degrees.
-fn half_sphere(value: impl Fn(f64) -> f64) -> f64 {
+/// The integral over half of the sphere of what depends on the angle, in degrees beyond `from`.
+fn half_sphere(value: impl Fn(f64) -> f64, from: f64) -> f64 {
     const STEPS: u32 = 1800;
     let step = 90.0 / f64::from(STEPS);
     let at = |i: u32| {
         let degrees = (f64::from(i) + 0.5) * step;
-        value(degrees) * degrees.to_radians().sin()
+        value(degrees) * (from + degrees).to_radians().sin()
     };
     (0..STEPS).map(at).sum::<f64>() * step.to_radians()
 }
@@ -264,32 +276,57 @@ mod tests {
         };
         let angles = degrees.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
         let lambert = IesProfile::parse(&file(&angles, "0", &of(&|a| 100.0 * a.cos().max(0.0)))).unwrap();
-        assert!((lambert.lumens() / (100.0 * PI) - 1.0).abs() < 2e-3, "{}", lambert.lumens());
+        assert!((lambert.lumens()[0] / (100.0 * PI) - 1.0).abs() < 2e-3, "{}", lambert.lumens()[0]);
         assert_eq!((lambert.opening, lambert.is_round_opening), ([0.2, 0.2, 0.0], true));
-        let (profile, candela) = lambert.round(4).unwrap();
+        let (profile, candela) = lambert.profile(4).unwrap();
         assert!((candela * profile.factor(1.0) / 100.0 - 1.0).abs() < 5e-3, "{candela}");
         // A batwing
         let batwing = of(&|a| 50.0 + 200.0 * (2.0 * a).sin().powi(2) * a.cos());
         let batwing = IesProfile::parse(&file(&angles, "0", &batwing)).unwrap();
-        let (profile, candela) = batwing.round(8).unwrap();
+        let (profile, candela) = batwing.profile(8).unwrap();
         for degrees in [0.0_f64, 30.0, 45.0, 60.0, 75.0] {
             let cosine = degrees.to_radians().cos();
             let found = candela * profile.factor(cosine) * cosine;
             // What is sent along the plane goes elsewhere
-            assert!((found / batwing.mean_candela(degrees) - 1.0).abs() < 0.03, "{degrees}: {found}");
+            assert!((found / batwing.candela_at(degrees, 123.0) - 1.0).abs() < 0.03, "{degrees}: {found}");
         }
-        assert!((candela * PI * profile.power() / batwing.lumens() - 1.0).abs() < 5e-3);
+        assert!((candela * PI * profile.power() / batwing.lumens()[0] - 1.0).abs() < 5e-3);
     }
 
     #[test]
-    fn what_is_not_round_says_by_how_much() {
-        let street = file("0 45 90", "0 90 180", "100 100 0 100 300 0 100 100 0");
-        let street = IesProfile::parse(&street).unwrap();
-        assert_eq!((street.mean_candela(45.0), street.mean_candela(0.0)), (200.0, 100.0));
-        let error = street.azimuth_error();
-        assert!((0.1..0.8).contains(&error), "{error}");
-        let round = IesProfile::parse(&file("0 45 90", "0", "100 100 0")).unwrap();
-        assert_eq!(round.azimuth_error(), 0.0);
+    fn azimuths_are_the_file_s() {
+        let street = |horizontal, candela| IesProfile::parse(&file("0 45 90", horizontal, candela)).unwrap();
+        let half = street("0 90 180", "100 100 0 100 300 0 100 200 0");
+        for (degrees, azimuth, expected) in [
+            (45.0, 90.0, 300.0),
+            (45.0, 270.0, 300.0),
+            (45.0, 45.0, 200.0),
+            (45.0, 225.0, 250.0),
+            (0.0, 77.0, 100.0),
+        ] {
+            assert_eq!(half.candela_at(degrees, azimuth), expected, "{degrees} {azimuth}");
+        }
+        let quarter = street("0 90", "100 100 0 100 300 0");
+        assert_eq!(
+            [0.0, 45.0, 135.0, 180.0, 315.0].map(|a| quarter.candela_at(45.0, a)),
+            [100.0, 200.0, 200.0, 100.0, 200.0]
+        );
+        let sides = street("90 180 270", "100 100 0 100 300 0 100 200 0");
+        assert_eq!(
+            [0.0, 90.0, 180.0, 270.0, 315.0].map(|a| sides.candela_at(45.0, a)),
+            [300.0, 100.0, 300.0, 200.0, 250.0]
+        );
+        // A flat light has them, and the lumens of all
+        for lamp in [half, quarter, sides] {
+            let (profile, candela) = lamp.profile(8).unwrap();
+            for azimuth in [0.0_f64, 45.0, 100.0, 180.0, 300.0] {
+                let cosine = 30_f64.to_radians().cos();
+                let found = candela * cosine * profile.factor_toward(cosine, azimuth.to_radians());
+                let expected = lamp.candela_at(30.0, azimuth);
+                assert!((found / expected - 1.0).abs() < 5e-3, "{azimuth}: {found} {expected}");
+            }
+            assert!((candela * PI * profile.power() / lamp.lumens()[0] - 1.0).abs() < 5e-3);
+        }
     }
 
     #[test]
@@ -316,6 +353,6 @@ mod tests {
             assert!(message.starts_with(expected), "{message}\nnot {expected}");
         }
         let dark = IesProfile::parse(&file("90 180", "0", "0 1")).unwrap();
-        assert!(dark.round(4).is_err());
+        assert!(dark.profile(4).is_err());
     }
 }

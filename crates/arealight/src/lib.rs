@@ -71,6 +71,7 @@
 
 #![forbid(unsafe_code)]
 
+mod azimuth;
 pub mod blockers;
 pub mod effects;
 pub mod gpu;

@@ -134,8 +134,9 @@ impl Light {
         }
         let step = TAU / f64::from(Self::DISK_CORNERS);
         let scale = (step / step.sin()).sqrt();
+        // The first edge goes along `axis_u`
         let vertices = (0..Self::DISK_CORNERS).map(|corner| {
-            let (sin, cos) = (f64::from(corner) * step).sin_cos();
+            let (sin, cos) = ((f64::from(corner) - 3.5) * step).sin_cos();
             center + (axis_u * cos + axis_v * sin) * scale
         });
         Cow::Owned(Self { shape: LightShape::Polygon(vertices.collect()), ..self.clone() })

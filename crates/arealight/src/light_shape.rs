@@ -80,6 +80,16 @@ impl LightShape {
         }
     }
 
+    /// The direction of the first edge of an outline that has a length, of a disk `axis_u`: where the azimuth
+    /// of a [`Profile`](crate::Profile) begins. Zero of other shapes.
+    pub fn first_edge(&self) -> DVec3 {
+        if let Self::Disk { axis_u, .. } = self {
+            return axis_u.normalize_or_zero();
+        }
+        let edges = self.vertices().windows(2).map(|pair| (pair[1] - pair[0]).normalize_or_zero());
+        edges.into_iter().find(|edge| *edge != DVec3::ZERO).unwrap_or(DVec3::ZERO)
+    }
+
     /// As [`LightShape::vertices`], to be moved.
     pub fn vertices_mut(&mut self) -> &mut [DVec3] {
         match self {

@@ -1,5 +1,6 @@
 //! Lights as the GPU reads them.
 
+use crate::azimuth::{HARMONICS, PLACES};
 use crate::gpu::{GpuLight, GpuShape};
 use crate::light_fault::{LightError, LightFault};
 use crate::light_shape::area_of;
@@ -13,8 +14,11 @@ mod shapes;
 const TEXTURE_ROWS: usize = 4;
 
 /// The most rows of an opening and a profile, and of the disk that has them.
-const SHAPING_ROWS: usize =
-    10 + Profile::MAX_LEVELS as usize + Profile::PIECES + Light::DISK_CORNERS as usize;
+const SHAPING_ROWS: usize = 11
+    + Profile::MAX_LEVELS as usize
+    + Profile::PIECES
+    + (PLACES + 1) * HARMONICS / 2
+    + Light::DISK_CORNERS as usize;
 
 /// Lights as the GPU reads them, relative to an origin. The arrays are uploaded to a buffer each;
 /// [`PackedLights::summary`] goes to the frame.
@@ -26,9 +30,7 @@ pub struct PackedLights {
     /// vertices a row with the face's unit normal in xyz and their count in w. After the vertices of a
     /// textured light come four rows, its image's place: (corner, lowest u), (axis of u, lowest v), (axis of
     /// v, extent in u), (extent in v, 0, 0, 0), see [`TextureMap`]. After those come the rows of its opening
-    /// (`lights/opening.glsl`), and then of its profile: (scale, levels, piece scale, 0), of each level its
-    /// place ([`Profile::places`]) and the squared tangent of its angle, of each piece's beginning its place
-    /// with the slope last, and the end with slope 0.
+    /// (`lights/opening.glsl`), and then of its profile (`lights/profile.glsl`).
     pub vertices: Vec<[f32; 4]>,
     /// One record per disk, sphere or tube: by kind in this order, else in the given one.
     pub shapes: Vec<GpuShape>,
@@ -171,7 +173,7 @@ impl PackedLights {
             self.vertices.extend(opening.rows(vertices, origin));
         }
         if let Some(profile) = &light.profile {
-            self.push_profile(profile);
+            self.push_profile(profile, shape.first_edge());
         }
         let greatest = light.profile.as_ref().map_or(1.0, Profile::greatest);
         let area_vector = shape.area_vector();
@@ -205,8 +207,8 @@ impl PackedLights {
         }
     }
 
-    /// The rows of a profile, its greatest factor being 1.
-    fn push_profile(&mut self, profile: &Profile) {
+    /// The rows of a profile, its greatest factor being 1; azimuth 0 is along `axis`.
+    fn push_profile(&mut self, profile: &Profile, axis: DVec3) {
         let parts = DVec3::new(1.0, profile.greatest(), profile.greatest());
         let places: Vec<DVec3> = profile.places().into_iter().map(|place| place / parts).collect();
         let row = |place: DVec3, number: f64| place.as_vec3().extend(number as f32).to_array();
@@ -214,7 +216,7 @@ impl PackedLights {
             profile.scale() as f32,
             profile.levels().len() as f32,
             profile.piece_scale() as f32,
-            0.0,
+            if profile.harmonics().is_empty() { 0.0 } else { 1.0 },
         ]);
         self.vertices.extend(profile.levels().iter().map(|cosine| {
             let tangents = (1.0 - cosine * cosine) / (cosine * cosine);
@@ -225,6 +227,15 @@ impl PackedLights {
             row(pair[0], step.y / step.x)
         }));
         self.vertices.extend(places.last().map(|place| row(DVec3 { y: 0.0, ..*place }, 0.0)));
+        let harmonics = profile.harmonics().as_flattened();
+        self.vertices.extend((!harmonics.is_empty()).then(|| row(axis, 0.0)));
+        self.vertices.extend(
+            harmonics
+                .as_chunks()
+                .0
+                .iter()
+                .map(|[a, b]| [a.x, a.y, b.x, b.y].map(|coefficient| coefficient as f32)),
+        );
     }
 
     /// The rows of a texture's place, whose corner is `corner` from the light's center.

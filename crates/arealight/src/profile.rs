@@ -6,11 +6,12 @@
 //! the perpendicular from the surface to the light's plane. So between a few angles, the *levels*, what
 //! arrives is a form factor of a part of the light, times the profile's mean there: docs/shaped-light.md.
 
+use crate::azimuth::{Azimuths, Harmonics};
 use crate::light_fault::LightFault;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A factor of a light's radiance by the angle from its front: round about the normal, 0 behind.
+/// A factor of a light's radiance by the angle from its front, and about it by the azimuth; 0 behind.
 ///
 /// ```
 /// use arealight::Profile;
@@ -21,8 +22,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// Degrees and factor, the degrees rising.
+    /// Degrees and factor, the mean about the normal, the degrees rising.
     pairs: Vec<[f64; 2]>,
+    /// Where it is not round about the normal.
+    azimuths: Option<Azimuths>,
     /// From this cosine down the factor is 0.
     end: f64,
     /// Cosines between which a mean is taken, falling.
@@ -30,14 +33,21 @@ pub struct Profile {
 }
 
 impl Profile {
+    /// The most rows, and numbers in each.
+    pub const MOST_ANGLES: usize = 2048;
     /// The most levels: with so many the means are the profile itself, for comparisons.
     pub const MAX_LEVELS: u32 = 180;
     /// Pieces that are linear in the cosine, of which a profile is made on the GPU: as many between the axis
     /// and its end, as wide in the sine of the half angle.
     pub const PIECES: usize = 64;
 
-    /// A profile of pairs of degrees from the front normal, from 0 to 90, rising, and a factor, linear
-    /// between them. Before the first pair the factor is the first one's, after the last one 0.
+    /// A profile of rows of degrees from the front normal, from 0 to 90, rising, and a factor, linear between
+    /// them. Before the first row the factor is the first one's, after the last one 0.
+    ///
+    /// Where it is not round each row has several factors, as many as each other, at azimuths that divide the
+    /// circle evenly and linear between them. Azimuth 0 is where the first edge of the light's outline goes,
+    /// of a disk `axis_u`; from there they go on counter-clockwise as seen from behind, which of a lamp that
+    /// hangs is from above. The GPU has six harmonics of them.
     ///
     /// `levels`: how many angles, from 1 to [`Profile::MAX_LEVELS`], divide it; they are placed by the
     /// profile's own curve. On the known cases 4 have an error of 1 % on Lambert surfaces and 3 % on glossy
@@ -45,24 +55,39 @@ impl Profile {
     ///
     /// # Errors
     /// [`LightFault::BadProfile`] says what is wrong.
-    pub fn new(pairs: &[[f64; 2]], levels: u32) -> Result<Self, LightFault> {
+    pub fn new<R: AsRef<[f64]>>(rows: &[R], levels: u32) -> Result<Self, LightFault> {
         let wrong = |reason: String| Err(LightFault::BadProfile { reason });
-        if pairs.is_empty() {
+        let Some(count) = rows.first().map(|row| row.as_ref().len()) else {
             return wrong("no pair given: give degrees from the front normal and a factor".into());
+        };
+        if rows.len().max(count) > Self::MOST_ANGLES {
+            let most = Self::MOST_ANGLES;
+            return wrong(format!("{} rows of {count} numbers, at most {most} of each", rows.len()));
         }
         if !(1..=Self::MAX_LEVELS).contains(&levels) {
             return wrong(format!("levels: {levels} is not from 1 to {}", Self::MAX_LEVELS));
         }
-        let mut before = -1.0;
-        for (index, &[degrees, factor]) in pairs.iter().enumerate() {
+        let (mut before, mut angles, mut factors) = (-1.0, vec![], vec![]);
+        for (index, row) in rows.iter().enumerate() {
+            let (row, numbers) = (row.as_ref(), row.as_ref().len());
+            let (2.., true, [degrees, row @ ..]) = (count, numbers == count, row) else {
+                let expected = count.max(2);
+                return wrong(format!("pairs[{index}] has {numbers} numbers, where {expected} are"));
+            };
+            let degrees = *degrees;
             if !(0.0..=90.0).contains(&degrees) || degrees <= before {
                 return wrong(format!("pairs[{index}]: {degrees} degrees: they rise from 0 to at most 90"));
             }
-            if !(0.0..=f64::from(f32::MAX)).contains(&factor) {
+            if let Some(factor) = row.iter().find(|it| !(0.0..=f64::from(f32::MAX)).contains(*it)) {
                 return wrong(format!("pairs[{index}]: a factor of {factor} is not finite and from 0 on"));
             }
             before = degrees;
+            angles.push(degrees);
+            factors.extend_from_slice(row);
         }
+        let mean = |row: &[f64]| row.iter().sum::<f64>() / row.len() as f64;
+        let pairs: Vec<[f64; 2]> =
+            angles.iter().zip(factors.chunks(count - 1)).map(|(angle, row)| [*angle, mean(row)]).collect();
         let dark = pairs.iter().rposition(|[_, factor]| *factor > 0.0);
         let Some(last) = dark else {
             return wrong("every factor is 0: leave the light out".into());
@@ -71,9 +96,18 @@ impl Profile {
         if end == 0.0 {
             return wrong("it ends at 0 degrees: nothing is that narrow".into());
         }
-        let mut profile = Self { pairs: pairs.to_vec(), end: end.cos().max(0.0), levels: Vec::new() };
+        let mut profile = Self { pairs, azimuths: None, end: end.cos().max(0.0), levels: Vec::new() };
+        let angle = |place: f64| angle_of(1.0 - place * place / profile.piece_scale()).to_degrees();
+        profile.azimuths = Azimuths::new(&angles, &factors, angle);
         profile.levels = profile.placed_levels(end, levels as usize);
         Ok(profile)
+    }
+
+    /// The same on other levels, from 1 to [`Profile::MAX_LEVELS`].
+    #[must_use]
+    pub fn with_levels(&self, levels: u32) -> Self {
+        let levels = levels.clamp(1, Self::MAX_LEVELS) as usize;
+        Self { levels: self.placed_levels(angle_of(self.end), levels), ..self.clone() }
     }
 
     /// The cone of a spot, as `KHR_lights_punctual` has it, for a flat light: with it the light's *intensity*
@@ -125,12 +159,27 @@ impl Profile {
         Self::new(&pairs, levels)
     }
 
-    /// The pairs that it was made of.
-    pub fn pairs(&self) -> &[[f64; 2]] {
-        &self.pairs
+    /// The factor in a direction: the cosine of its angle from the front normal, and the azimuth in radians.
+    pub fn factor_toward(&self, cosine: f64, azimuth: f64) -> f64 {
+        let Some(azimuths) = &self.azimuths else { return self.factor(cosine) };
+        let last = self.pairs[self.pairs.len() - 1][0];
+        let degrees = angle_of(cosine).to_degrees();
+        if cosine <= 0.0 || degrees > last { 0.0 } else { azimuths.factor(degrees, azimuth) }
     }
 
-    /// The factor at a cosine of the angle from the front normal.
+    /// What the factor is about a direction, in parts of its mean about the normal, as the GPU has it: `turn`
+    /// is the azimuth's cosine and sine, `gathered` 1 at that azimuth, less the more it is all around.
+    pub fn azimuth_part(&self, cosine: f64, turn: DVec2, gathered: f64) -> f64 {
+        let place = ((1.0 - cosine) * self.piece_scale()).max(0.0).sqrt();
+        self.azimuths.as_ref().map_or(1.0, |azimuths| azimuths.part(place, turn, gathered))
+    }
+
+    /// The harmonics of the azimuth, place by place; none where it is round.
+    pub(crate) fn harmonics(&self) -> &[Harmonics] {
+        self.azimuths.as_ref().map_or(&[], |azimuths| &azimuths.harmonics)
+    }
+
+    /// The factor at a cosine of the angle from the front normal, the mean about it.
     pub fn factor(&self, cosine: f64) -> f64 {
         let last = self.pairs[self.pairs.len() - 1];
         let degrees = angle_of(cosine).to_degrees();
@@ -150,7 +199,8 @@ impl Profile {
 
     /// The greatest factor.
     pub fn greatest(&self) -> f64 {
-        self.pairs.iter().map(|pair| pair[1]).fold(0.0, f64::max)
+        let means = self.pairs.iter().map(|pair| pair[1]).fold(0.0, f64::max);
+        self.azimuths.as_ref().map_or(means, Azimuths::greatest)
     }
 
     /// What a flat light with it sends, in parts of what it would send without: the mean of the factor over
@@ -322,7 +372,7 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named() {
         for (pairs, levels, expected) in [
-            (&[][..], 4, "no pair"),
+            (&[] as &[[f64; 2]], 4, "no pair"),
             (&[[0.0, 1.0]], 4, "it ends at 0"),
             (&[[0.0, 1.0], [90.0, 0.0]], 0, "levels: 0"),
             (&[[0.0, 1.0], [90.0, 0.0]], 181, "levels: 181"),
@@ -336,5 +386,10 @@ mod tests {
             let message = Profile::new(pairs, levels).unwrap_err().to_string();
             assert!(message.starts_with(&format!("profile: {expected}")), "{message}");
         }
+        let rows = |rows: &[Vec<f64>]| Profile::new(rows, 4).unwrap_err().to_string();
+        assert_eq!(rows(&[vec![0.0], vec![90.0]]), "profile: pairs[0] has 1 numbers, where 2 are");
+        let uneven = rows(&[vec![0.0, 1.0, 2.0], vec![90.0, 1.0]]);
+        assert_eq!(uneven, "profile: pairs[1] has 2 numbers, where 3 are");
+        assert!(rows(&[vec![0.0; 4000]]).contains("4000 numbers, at most"));
     }
 }

@@ -114,11 +114,12 @@ fn lights_that_cannot_be_shaded_are_named() {
     let tube = ArealightLight { kind: AREALIGHT_LIGHT_TUBE, ..moon() };
     let profiled = |pairs: &[f64], light| ArealightLight {
         profile: pairs.as_ptr(),
-        profile_pair_count: pairs.len() as u32 / 2,
+        profile_row_count: pairs.len() as u32 / 2,
         profile_levels: 4,
         ..light
     };
     let (cone, back) = ([0.0, 1.0, 20.0, 1.0, 30.0, 0.0], [91.0, 1.0]);
+    let around = [0.0, 1.0, 1.0, 1.0, 1.0, 20.0, 1.0, 0.2, 0.5, 0.2, 30.0, 0.0, 0.0, 0.0, 0.0];
     let behind = ArealightLight {
         has_opening: 1,
         opening_center: [0.2, 0.3, 0.5],
@@ -160,19 +161,20 @@ fn lights_that_cannot_be_shaded_are_named() {
         refused(pack(&[light(), wrong], &mut arrays), result, words);
     }
     // The twins; what a profile and an opening are packed to is what it is in Rust
-    let (mut record, mut rows) = ([0u32; 16], [0.0f32; 512]);
+    let (mut record, mut rows) = ([0u32; 16], [0.0f32; 1024]);
     let mut whole = ArealightPackedLights {
         lights: record.as_mut_ptr().cast(),
         lights_size: 64,
         vertices: rows.as_mut_ptr().cast(),
-        vertices_size: 2048,
+        vertices_size: 4096,
         ..NO_ARRAYS
     };
-    good(pack(&[spot], &mut whole));
+    let street = ArealightLight { profile_row_count: 3, profile_azimuth_count: 4, ..profiled(&around, spot) };
+    good(pack(&[street], &mut whole));
     let expected = Light {
         shape: LightShape::Polygon(TRIANGLE.as_chunks().0.iter().map(|v| DVec3::from_array(*v)).collect()),
         radiance: Vec3::ONE,
-        profile: Some(Profile::new(cone.as_chunks().0, 4).unwrap()),
+        profile: Some(Profile::new(around.as_chunks::<5>().0, 4).unwrap()),
         opening: Some(Opening {
             center: DVec3::new(0.2, 0.3, 0.5),
             axis_u: DVec3::X * 0.5,

@@ -302,9 +302,8 @@ const LEVELS: u32 = 4;
 
 fn read_profile(fields: &Fields) -> Result<Option<Profile>, CaseError> {
     let levels = fields.optional("profile_levels", Fields::length)?.map_or(LEVELS, |levels| levels as u32);
-    let pairs = fields.optional("profile", |f, field| f.list(field, Fields::pair_at))?;
-    let pairs: Option<Vec<[f64; 2]>> = pairs.map(|pairs| pairs.iter().map(DVec2::to_array).collect());
-    let profile = pairs.map(|pairs| Profile::new(&pairs, levels)).transpose();
+    let rows = fields.optional("profile", |f, field| f.list(field, Fields::row_at))?;
+    let profile = rows.map(|rows| Profile::new(&rows, levels)).transpose();
     profile.map_err(|fault| fields.error("profile", &fault.to_string()))
 }
 
@@ -371,6 +370,7 @@ impl Case {
             two_sided: self.light.two_sided,
             image: None,
             profile: self.light.profile.clone(),
+            azimuth: LightShape::Polygon(vertices.clone()).first_edge(),
             opening: self.light.opening.map(|it| it.moved(&DAffine3::from_translation(-self.position))),
         };
         if let Some(texture) = texture {

@@ -105,16 +105,16 @@ pub(crate) fn lights(
 }
 
 /// What a file of ours says in `extras.arealight` of a light's angles: `spread`, as Blender has it, in
-/// radians, or `profile`, pairs of degrees and a factor.
+/// radians, or `profile`, rows of degrees and factors.
 fn profile(light: &AreaLight) -> Result<Option<Profile>, String> {
     let said = &light.extras["arealight"];
     let made = match (&said["spread"], &said["profile"]) {
         (Value::Number(spread), _) => Profile::spread(spread.as_f64().unwrap_or(f64::NAN), LEVELS),
         (_, Value::Null) => return Ok(None),
         (_, pairs) => {
-            let pairs: Vec<[f64; 2]> =
+            let rows: Vec<Vec<f64>> =
                 Deserialize::deserialize(pairs).map_err(|error| format!("profile: {error}"))?;
-            Profile::new(&pairs, LEVELS)
+            Profile::new(&rows, LEVELS)
         }
     };
     made.map(Some).map_err(|fault| fault.to_string())
@@ -122,15 +122,15 @@ fn profile(light: &AreaLight) -> Result<Option<Profile>, String> {
 
 /// A node's scale as the extension has it, with unit vectors to the light's right, up and front:
 /// right-angled, also under shear.
-struct Placing {
+pub(crate) struct Placing {
     scale: f64,
-    right: DVec3,
+    pub right: DVec3,
     up: DVec3,
-    front: DVec3,
+    pub front: DVec3,
 }
 
 impl Placing {
-    fn new(node: &PlacedNode) -> Result<Self, String> {
+    pub fn new(node: &PlacedNode) -> Result<Self, String> {
         // The scale is the largest of the node's three, without a sign
         let [x, y, z] = [node.world.matrix3.x_axis, node.world.matrix3.y_axis, node.world.matrix3.z_axis];
         let scale = x.length().max(y.length()).max(z.length());
@@ -159,7 +159,8 @@ fn polygon(light: &AreaLight, node: &PlacedNode) -> Result<LightShape, String> {
     }
     let center = node.world.translation;
     let corner = |u: f64, v: f64| center + right * (u * half_width) + up * (v * half_height);
-    let mut vertices = vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
+    // The first edge goes to the right, mirrored or not: a profile's azimuth begins there
+    let mut vertices = vec![corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)];
     if up.cross(right).dot(front) < 0.0 {
         vertices.reverse();
     }

@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 pub(crate) const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 pub(crate) const AREA_LIGHTS: &str = "EXT_lights_area";
 pub(crate) const DRACO: &str = "KHR_draco_mesh_compression";
+pub(crate) const IES_LIGHTS: &str = "EXT_lights_ies";
 pub(crate) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 pub(crate) const PUNCTUAL_LIGHTS: &str = "KHR_lights_punctual";
 
@@ -26,8 +27,9 @@ pub(crate) const OF_MATERIALS: [&str; 6] =
     [ANISOTROPY, CLEARCOAT, DIFFUSE_TRANSMISSION, IRIDESCENCE, SHEEN, TRANSMISSION];
 
 /// What else is read.
-const READ: [&str; 12] = [
+const READ: [&str; 13] = [
     AREA_LIGHTS,
+    IES_LIGHTS,
     INSTANCING,
     MESHOPT[0],
     MESHOPT[1],
@@ -43,8 +45,7 @@ const READ: [&str; 12] = [
 
 /// What a scene is shown without, with a warning, also where a file requires it; and every other
 /// `KHR_materials` extension.
-const COSTS_LOOKS: [&str; 8] = [
-    "EXT_lights_ies",
+const COSTS_LOOKS: [&str; 7] = [
     "EXT_lights_image_based",
     "KHR_animation_pointer",
     "KHR_audio_emitter",

@@ -49,6 +49,7 @@ mod emitters;
 mod error;
 mod extensions;
 mod gpu;
+mod ies_lights;
 mod images;
 mod light_textures;
 mod lit_texels;

@@ -7,8 +7,8 @@ use crate::error::SceneError;
 use crate::messages::Messages;
 use crate::scene::{NO_LIGHTS, Scene, SceneLamp};
 use crate::{
-    animations, area_lights, compressed_views, draco, extensions, light_textures, materials, meshes, mips,
-    nodes, primitives, punctual, skins,
+    animations, area_lights, compressed_views, draco, extensions, ies_lights, light_textures, materials,
+    meshes, mips, nodes, primitives, punctual, skins,
 };
 use std::cell::LazyCell;
 use std::path::Path;
@@ -97,6 +97,7 @@ fn read(mut document: Document, name: String, options: LoadOptions) -> Result<Sc
     lights.extend(area_lights::lights(document, &nodes, messages)?);
     let mut bounds: Bounds = triangles.iter().flat_map(|t| t.positions).collect();
     lights.extend(punctual::lights(document, &nodes, options.light_size, bounds, messages)?);
+    lights.extend(ies_lights::lights(document, &nodes, options.light_size, messages)?);
     lamps.extend(SceneLamp::bare(shown..lights.len()));
     if shown > 0 && shown < lights.len() {
         let text = "emission is taken as radiance, W/(m² sr), lights without a mesh by 683 lm/W: 1000 nits of \

@@ -4,7 +4,7 @@ use crate::bounds::MAX_COORDINATE;
 use crate::camera::Camera;
 use crate::document::Document;
 use crate::error::SceneError;
-use crate::extensions::{AREA_LIGHTS, PUNCTUAL_LIGHTS};
+use crate::extensions::{AREA_LIGHTS, IES_LIGHTS, PUNCTUAL_LIGHTS};
 use crate::messages::Messages;
 use crate::scene::SceneFog;
 use crate::transforms;
@@ -35,6 +35,8 @@ pub(crate) struct PlacedNode {
     pub area_light: Option<Value>,
     /// Its `KHR_lights_punctual` extension.
     pub punctual_light: Option<Value>,
+    /// Its `EXT_lights_ies` extension.
+    pub ies_light: Option<Value>,
     /// What its `extras` say that its emissive mesh stands for.
     pub shape: Option<Value>,
 }
@@ -78,6 +80,7 @@ pub(crate) fn place(document: &Document, messages: &mut Messages) -> Result<Vec<
             camera: node.camera.map(|c| c.value()),
             area_light: extension(AREA_LIGHTS),
             punctual_light: extension(PUNCTUAL_LIGHTS),
+            ies_light: extension(IES_LIGHTS),
             shape: said(&node.extras),
         };
         match transforms::of_instances(document, index, node, placed.len())? {
@@ -97,6 +100,7 @@ pub(crate) fn place(document: &Document, messages: &mut Messages) -> Result<Vec<
                     camera: None,
                     area_light: None,
                     punctual_light: None,
+                    ies_light: None,
                     index,
                 };
                 let instances: Vec<PlacedNode> = instances.into_iter().enumerate().map(instance).collect();

@@ -100,7 +100,7 @@ fn layouts() -> [Layout; 27] {
         ArealightLight {
             name, kind, two_sided, radiance, textured, texture_layer, vertex_count, vertices,
             texture_coordinates, hole_vertex_counts, face_vertex_counts, hole_count, face_count, center,
-            axis_u, axis_v, radius, ends, profile_pair_count, profile, profile_levels, has_opening,
+            axis_u, axis_v, radius, ends, profile_row_count, profile_azimuth_count, profile, profile_levels, has_opening,
             opening_center, opening_axis_u, opening_axis_v, opening_housed, reserved,
         }
         ArealightReach { center, radius, low, high }

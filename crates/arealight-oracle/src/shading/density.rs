@@ -47,7 +47,8 @@ pub fn density_truth(
     let region = bounds.iter().fold(region, |region, normal| region.clipped(frame.to_surface(*normal)));
     let estimate = directions.cut(&region).integrate(settings, angles, |to| {
         let shown = image.as_ref().map_or(DVec3::ONE, |image| image.color(to));
-        let factor = light.profile.as_ref().map_or(1.0, |profile| factor_in(profile, &vertices, to));
+        let azimuth = frame.to_surface(light.azimuth);
+        let factor = light.profile.as_ref().map_or(1.0, |profile| factor_in(profile, azimuth, &vertices, to));
         (shown * (factor * density(to))).to_array()
     });
     Truth {

@@ -2,8 +2,8 @@
 
 use crate::polygon::{clip_by, transformed_form_factor, vector_form_factor};
 use arealight::Profile;
-use glam::{DMat3, DVec3};
-use std::f64::consts::TAU;
+use glam::{DMat3, DVec2, DVec3};
+use std::f64::consts::{PI, TAU};
 
 /// Corners of the polygon that stands for a level's disk, of its area: what they differ in is 1e-4 of what it
 /// sends.
@@ -12,7 +12,13 @@ const CORNERS: u32 = 256;
 /// What a transformed cosine gets through a profile, signed. `vertices` are what is seen of the light,
 /// convex, `visible` what counts of that, both from the shading point. The float64 twin of
 /// `lights/shaped.glsl`, but for its disks, which are finer here.
-pub(super) fn profiled(profile: &Profile, vertices: &[DVec3], visible: &[DVec3], inverse: &DMat3) -> f64 {
+/// `azimuth` is where the profile's begins.
+pub(super) fn profiled(
+    (profile, azimuth): (&Profile, DVec3),
+    vertices: &[DVec3],
+    visible: &[DVec3],
+    inverse: &DMat3,
+) -> f64 {
     let Some(normal) = normal_of(vertices) else { return 0.0 };
     let foot = normal * normal.dot(vertices[0]);
     let height = foot.length_squared();
@@ -31,13 +37,14 @@ pub(super) fn profiled(profile: &Profile, vertices: &[DVec3], visible: &[DVec3],
         let round = cosine + cosine * cosine;
         let seen = 3.0 * round * axis.z * axis + DVec3::Z * (2.0 - round);
         let direction = back * seen;
-        let (mut low, mut high) = (from, to);
+        let (mut low, mut high, mut about) = (from, to, 1.0);
         if direction != DVec3::ZERO && direction.is_finite() {
             let half_tangent = |square: f64| square.sqrt() / (1.0 + (1.0 - square).sqrt());
             let [first, last] =
                 [from, to].map(|place| half_tangent((place.x / profile.scale()).clamp(0.0, 1.0)));
             let cosine = normal.dot(direction) / direction.length();
-            let middle = half_tangent((1.0 - cosine * cosine).max(0.0)).clamp(first, last.max(first));
+            let apart = half_tangent((1.0 - cosine * cosine).max(0.0));
+            let middle = apart.clamp(first, last.max(first));
             let shrunk = (seen.length() / direction.length()).powi(3) / determinant;
             let width = shrunk.sqrt() * (0.25 + 0.25 * middle * middle);
             let ends = [(middle - width).max(first), (middle + width).min(last)];
@@ -46,13 +53,19 @@ pub(super) fn profiled(profile: &Profile, vertices: &[DVec3], visible: &[DVec3],
                 ends[0] + narrow * (middle + width - ends[1]),
                 ends[1] + narrow * (middle - width - ends[0]),
             ];
-            let at =
-                |tangent: f64| profile.place(&places, (1.0 - tangent * tangent) / (1.0 + tangent * tangent));
+            let at = |tangent: f64| profile.place(&places, cosine_of(tangent));
             low = if ends[0] > first { at(ends[0]) } else { from };
             high = if ends[1] < last { at(ends[1]) } else { to };
+            let sine = 2.0 * middle / (1.0 + middle * middle);
+            let across = 2.0 * (last - first) / (1.0 + first * last);
+            let part = vector.length() * shrunk / (sine * sine).max(1e-30);
+            let along = PI * part * sine / across.max(1e-30);
+            let gathered = (-0.25 * part - along * along / 24.0).exp() * (apart / middle.max(1e-30)).min(1.0);
+            let turn = turn_of(normal, azimuth, direction);
+            about = profile.azimuth_part(cosine_of(0.5 * (ends[0] + ends[1])), turn, gathered);
         }
         let range = high.x - low.x;
-        if range > 1e-3 { (high.z - low.z) / range } else { 0.5 * (low.y + high.y) }
+        about * if range > 1e-3 { (high.z - low.z) / range } else { 0.5 * (low.y + high.y) }
     };
     let factor = |part: &[DVec3]| transformed_form_factor(inverse, part);
     let vector = |part: &[DVec3]| {
@@ -76,11 +89,22 @@ pub(super) fn profiled(profile: &Profile, vertices: &[DVec3], visible: &[DVec3],
 }
 
 /// The factor of the profile in a direction, on the side that the light is seen from.
-pub(super) fn factor_in(profile: &Profile, vertices: &[DVec3], direction: DVec3) -> f64 {
+pub(super) fn factor_in(profile: &Profile, azimuth: DVec3, vertices: &[DVec3], direction: DVec3) -> f64 {
     normal_of(vertices).map_or(0.0, |normal| {
         let cosine = normal.dot(direction) / direction.length();
-        profile.factor(cosine.abs())
+        profile.factor_toward(cosine.abs(), turn_of(normal, azimuth, direction).to_angle())
     })
+}
+
+/// Cosine and sine of the azimuth at which a light sends what comes from a direction: counter-clockwise seen
+/// from behind.
+fn turn_of(normal: DVec3, azimuth: DVec3, direction: DVec3) -> DVec2 {
+    -DVec2::new(azimuth.dot(direction), azimuth.cross(normal).dot(direction)).normalize_or(DVec2::NEG_X)
+}
+
+/// The cosine of an angle by the tangent of its half.
+fn cosine_of(tangent: f64) -> f64 {
+    (1.0 - tangent * tangent) / (1.0 + tangent * tangent)
 }
 
 fn normal_of(vertices: &[DVec3]) -> Option<DVec3> {

@@ -32,6 +32,8 @@ struct ArealightLocalShaped {
     vec3 high;       // and of its farthest
     uint profile;    // the first row
     float scale;
+    float piece_scale;
+    uint azimuth;    // the row of azimuth 0; 0 where the profile is round
     uint levels;     // rows of levels
     uint levels_end;
     ArealightLocalOpening opening;
@@ -110,6 +112,7 @@ bool arealight_to_local(ArealightPoint point, ArealightShapedLight light, out Ar
     local.foot = height * local.normal;
     local.height = height * height;
     local.profile = light.profile;
+    local.azimuth = 0u;
     local.levels = 0u;
     local.levels_end = 0u;
     if (!arealight_has_profile(light.profile)) {
@@ -118,6 +121,8 @@ bool arealight_to_local(ArealightPoint point, ArealightShapedLight light, out Ar
     lit = arealight_find_range(local, height) && lit;
     vec4 head = arealight_bridge_profile(light.profile);
     local.scale = head.x;
+    local.piece_scale = head.z;
+    local.azimuth = head.w > 0.0 ? arealight_azimuth_row(light.profile, head.y) : 0u;
     local.levels = light.profile + 1u;
     local.levels_end = local.levels + uint(head.y);
     local.low = arealight_profile_place(light.profile, local.nearest, local.height);
@@ -253,6 +258,16 @@ float arealight_half_tangent(float x, float scale) {
     return sqrt(square) / (1.0 + sqrt(1.0 - square));
 }
 
+// How much what is seen of a ring is at one azimuth, 1, or all around, 0: as if it were a disk of the solid
+// angle pi `seen`, or that long within the ring's width. By tangents of half angles.
+float arealight_gathered(float seen, float middle, float first, float last) {
+    float sine = 2.0 * middle / (1.0 + middle * middle);
+    float across = 2.0 * (last - first) / (1.0 + first * last);
+    float part = seen / max(sine * sine, 1e-18);
+    float along = AREALIGHT_PI * part * sine / max(across, 1e-18);
+    return exp(-0.25 * min(part, 80.0) - min(along * along, 400.0) / 24.0);
+}
+
 // A profile's mean over a ring between two places, `vector` being the ring's vector form factor in the lobe's
 // space: over the angles about the mean direction of what the lobe sees of the ring, as far as the lobe is
 // wide there. In all of the ring, where the lobe is wider than it.
@@ -267,19 +282,29 @@ float arealight_profile_mean(ArealightLocalShaped local, ArealightRingLobe lobe,
     vec3 direction = mean * lobe.from_space;
     float square = dot(direction, direction);
     float height = abs(dot(direction, local.normal));
-    float side = length(direction - dot(direction, local.normal) * local.normal);
+    vec3 side = direction - dot(direction, local.normal) * local.normal;
     // By tangents of half angles, which are nearly as the angles
     float first = arealight_half_tangent(from.x, local.scale);
     float last = arealight_half_tangent(to.x, local.scale);
-    float middle = clamp(side / max(sqrt(square) + height, AREALIGHT_LEAST_SQUARE), first, last);
+    float apart = length(side) / max(sqrt(square) + height, AREALIGHT_LEAST_SQUARE);
+    float middle = clamp(apart, first, last);
     // A quarter of the angle that the lobe is wide: the root of how its space shrinks solid angles
     float ratio = dot(mean, mean) / max(square, AREALIGHT_LEAST_SQUARE);
-    float width = sqrt(ratio * sqrt(ratio) / lobe.determinant) * (0.25 + 0.25 * middle * middle);
+    float shrunk = ratio * sqrt(ratio) / lobe.determinant;
+    float width = sqrt(shrunk) * (0.25 + 0.25 * middle * middle);
     vec2 ends = vec2(max(middle - width, first), min(middle + width, last));
     // What the ring cuts off at one end goes from the other, too: the mean is to stay
     float narrow = 0.5 * max(1.0 - width / max(last - first, AREALIGHT_LEAST_SQUARE), 0.0);
     ends += narrow * vec2(middle + width - ends.y, middle - width - ends.x);
     bool is_known = square > 0.0 && square < 3e38;
+    float about = 1.0;
+    if (is_known && local.azimuth > 0u) {
+        float gathered = min(apart / max(middle, 1e-18), 1.0)
+            * arealight_gathered(form_factor * shrunk, middle, first, last);
+        about = arealight_profile_azimuth(local.azimuth, local.polygon.to_frame, local.normal, -side,
+                                          arealight_profile_part(0.5 * (ends.x + ends.y), local.piece_scale),
+                                          gathered);
+    }
     vec2 squares = ends * ends;
     vec2 rests = (1.0 - squares) * (1.0 - squares);
     if (is_known && ends.x > first) {
@@ -289,7 +314,7 @@ float arealight_profile_mean(ArealightLocalShaped local, ArealightRingLobe lobe,
         to = arealight_profile_place(local.profile, 4.0 * squares.y, rests.y);
     }
     float range = to.x - from.x;
-    return range > 1e-3 ? (to.z - from.z) / range : 0.5 * (from.y + to.y);
+    return about * (range > 1e-3 ? (to.z - from.z) / range : 0.5 * (from.y + to.y));
 }
 
 // Error beyond the form factors': of the profile within a ring, where it is its mean.

@@ -231,6 +231,12 @@ impl<'a> Fields<'a> {
         self.numbers_at(field, value).map(DVec2::from_array)
     }
 
+    /// Any count of numbers in `value`.
+    pub fn row_at(&self, field: &str, value: &Value) -> Result<Vec<f64>, CaseError> {
+        let items = value.as_array().ok_or_else(|| self.error(field, &describe("numbers", value)))?;
+        items.iter().map(|item| self.number_at(field, item)).collect()
+    }
+
     fn numbers_at<const N: usize>(&self, field: &str, value: &Value) -> Result<[f64; N], CaseError> {
         let items = value.as_array().filter(|items| items.len() == N);
         let items = items.ok_or_else(|| self.error(field, &describe(&format!("{N} numbers"), value)))?;

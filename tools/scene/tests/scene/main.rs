@@ -9,6 +9,7 @@ mod errors;
 mod extensions;
 mod geometry;
 mod hostile;
+mod ies_lights;
 mod lights;
 mod materials;
 mod own_scenes;

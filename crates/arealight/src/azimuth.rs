@@ -1,0 +1,88 @@
+//! Profiles that are not round: factors by azimuth, and the few harmonics of them that the GPU has.
+
+use glam::DVec2;
+use std::f64::consts::{PI, TAU};
+
+/// Factors by the angle from the front and the azimuth about it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Azimuths {
+    /// Degrees from the front, rising.
+    angles: Vec<f64>,
+    /// Of each angle the factors at azimuths that divide the circle evenly.
+    factors: Vec<f64>,
+    pub harmonics: Vec<Harmonics>,
+}
+
+/// Of the cosine and the sine of 1 to [`HARMONICS`] times the azimuth.
+pub(crate) type Harmonics = [DVec2; HARMONICS];
+pub(crate) const HARMONICS: usize = 6;
+/// Their rows lie as the pieces of the profile do, between the axis and its end.
+pub(crate) const PLACES: usize = 32;
+
+impl Azimuths {
+    /// None where the factors of each angle are all the same. `angle` tells the degrees of a place in [0, 1].
+    pub fn new(angles: &[f64], factors: &[f64], angle: impl Fn(f64) -> f64) -> Option<Self> {
+        let rows = factors.chunks(factors.len() / angles.len());
+        if rows.into_iter().all(|row| row.iter().all(|factor| *factor == row[0])) {
+            return None;
+        }
+        let mut made = Self { angles: angles.to_vec(), factors: factors.to_vec(), harmonics: Vec::new() };
+        let rows = (0..=PLACES).map(|index| made.row(angle(index as f64 / PLACES as f64)));
+        made.harmonics = rows.map(|row| harmonics(&row)).collect();
+        Some(made)
+    }
+
+    /// The factors about the axis at an angle between the first and the last, degrees.
+    fn row(&self, degrees: f64) -> Vec<f64> {
+        let count = self.factors.len() / self.angles.len();
+        let next = self.angles.partition_point(|angle| *angle < degrees).min(self.angles.len() - 1);
+        let before = next.saturating_sub(1);
+        let width = self.angles[next] - self.angles[before];
+        let part = if width > 0.0 { ((degrees - self.angles[before]) / width).clamp(0.0, 1.0) } else { 1.0 };
+        let [low, high] = [before, next].map(|row| &self.factors[row * count..][..count]);
+        low.iter().zip(high).map(|(low, high)| low + (high - low) * part).collect()
+    }
+
+    /// The factor in a direction: degrees, and radians about the axis.
+    pub fn factor(&self, degrees: f64, azimuth: f64) -> f64 {
+        let row = self.row(degrees);
+        let place = (azimuth / TAU).rem_euclid(1.0) * row.len() as f64;
+        let [from, to] = [place as usize % row.len(), (place as usize + 1) % row.len()];
+        row[from] + (row[to] - row[from]) * place.fract()
+    }
+
+    /// The greatest factor.
+    pub fn greatest(&self) -> f64 {
+        self.factors.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The factor about an azimuth in parts of the mean about the axis: `place` as the pieces have it, in
+    /// [0, 1], `turn` the azimuth's cosine and sine, `gathered` whether it is at one azimuth, 1, or all
+    /// around, 0. The twin of `arealight_profile_azimuth`.
+    pub fn part(&self, place: f64, turn: DVec2, gathered: f64) -> f64 {
+        let place = place.clamp(0.0, 1.0) * PLACES as f64;
+        let row = (place as usize).min(PLACES - 1);
+        let (mut power, mut damped, mut step, mut sum) = (turn, 1.0, gathered, 1.0);
+        for (from, to) in self.harmonics[row].iter().zip(self.harmonics[row + 1]) {
+            damped *= step;
+            step *= gathered * gathered;
+            sum += damped * from.lerp(to, place - row as f64).dot(power);
+            power = power.rotate(turn);
+        }
+        sum.max(0.0)
+    }
+}
+
+/// The harmonics of factors at azimuths that divide the circle evenly, linear between them.
+fn harmonics(row: &[f64]) -> Harmonics {
+    let step = TAU / row.len() as f64;
+    let mean = row.iter().sum::<f64>() / row.len() as f64;
+    std::array::from_fn(|k| {
+        let turn = step * (k + 1) as f64;
+        let at = |(index, factor): (usize, &f64)| DVec2::from_angle(turn * index as f64) * *factor;
+        let sum: DVec2 = row.iter().enumerate().map(at).sum();
+        // Too few samples tell nothing of it
+        let linear = if turn < PI { ((0.5 * turn).sin() / (0.5 * turn)).powi(2) } else { 0.0 };
+        sum * (2.0 * linear / (row.len() as f64 * mean.max(1e-30)))
+    })
+}
