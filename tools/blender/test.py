@@ -22,11 +22,22 @@ FOLDER = Path(sys.argv[2] if len(sys.argv) > 2 else tempfile.mkdtemp())
 SIZE = (320, 180)
 
 # Name, shape, size, place, watts, colour and scale of the studio's lamps; all look at the middle
-LAMPS = [
+AREAS = [
     ("key", "RECTANGLE", (1.2, 1.8), (-2.4, -2.2, 3.0), 300.0, (1.0, 0.9, 0.8), (1.0, 1.0, 1.0)),
     ("fill", "SQUARE", (1.5, 1.5), (3.0, -2.0, 2.0), 90.0, (0.7, 0.85, 1.0), (1.0, 1.0, 1.0)),
     ("top", "DISK", (1.0, 1.0), (0.3, 0.4, 3.5), 120.0, (1.0, 1.0, 1.0), (1.0, 1.0, 1.0)),
     ("rim", "ELLIPSE", (0.4, 1.6), (1.5, 2.4, 2.2), 150.0, (1.0, 0.4, 0.3), (1.5, 0.8, 1.0)),
+]
+# The same with the degrees of a spread
+SPREADS = [
+    ("key", "RECTANGLE", (1.2, 1.8), (-2.4, -2.2, 3.0), 300.0, (1.0, 0.9, 0.8), (1.0, 1.0, 1.0), 60.0),
+    ("fill", "SQUARE", (1.5, 1.5), (3.0, -2.0, 2.0), 200.0, (0.7, 0.85, 1.0), (1.0, 1.0, 1.0), 120.0),
+]
+# And spots and a point: "size" is the radius, then the degrees and the blend of a spot
+ROUNDS = [
+    ("key", "SPOT", 0.1, (-2.4, -2.2, 3.0), 900.0, (1.0, 0.9, 0.8), (1.0, 1.0, 1.0), 50.0, 0.3),
+    ("fill", "SPOT", 0.3, (3.0, -2.0, 2.0), 500.0, (0.7, 0.85, 1.0), (1.0, 1.0, 1.0), 75.0, 1.0),
+    ("point", "POINT", 0.25, (0.3, 0.4, 3.5), 150.0, (1.0, 1.0, 1.0), (1.0, 1.0, 1.0)),
 ]
 
 
@@ -58,7 +69,7 @@ def look_at(blender_object, target):
     blender_object.rotation_euler = toward.to_track_quat("-Z", "Y").to_euler()
 
 
-def studio(glossy):
+def studio(glossy, lamps):
     empty()
     grey = material("grey", (0.5, 0.5, 0.5))
     bpy.ops.mesh.primitive_plane_add(size=8)
@@ -77,10 +88,17 @@ def studio(glossy):
         bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=0.5, location=(x, 0, 0.5))
         bpy.ops.object.shade_smooth()
         give(made)
-    for name, shape, size, place, watts, color, scale in LAMPS:
-        lamp = bpy.data.lights.new(name, "AREA")
-        lamp.shape, lamp.energy, lamp.color = shape, watts, color
-        lamp.size, lamp.size_y = size
+    for name, shape, size, place, watts, color, scale, *angles in lamps:
+        is_area = shape not in ("SPOT", "POINT")
+        lamp = bpy.data.lights.new(name, "AREA" if is_area else shape)
+        lamp.energy, lamp.color = watts, color
+        if is_area:
+            lamp.shape, (lamp.size, lamp.size_y) = shape, size
+            lamp.spread = math.radians(angles[0]) if angles else math.pi
+        else:
+            lamp.shadow_soft_size = size
+        if shape == "SPOT":
+            lamp.spot_size, lamp.spot_blend = math.radians(angles[0]), angles[1]
         lamp.use_shadow = False
         placed = bpy.data.objects.new(name, lamp)
         placed.location, placed.scale = place, scale
@@ -129,8 +147,8 @@ def arealight(scene, name):
     return pixels(path)
 
 
-def compare(name, glossy, bound):
-    studio(glossy)
+def compare(name, glossy, bound, lamps=AREAS):
+    studio(glossy, lamps)
     scene = export(name)
     ours, theirs = arealight(scene, name), cycles(name)
     ratio = float(ours.mean() / theirs.mean())
@@ -211,6 +229,8 @@ def main():
     print(f"Blender {bpy.app.version_string}")
     check_file(compare("diffuse", False, 0.02))
     check_file(compare("glossy", True, 0.05))
+    compare("spread", False, 0.02, SPREADS)
+    compare("spots and a point", False, 0.02, ROUNDS)
     for name, prepare, options in [
         ("defaults", lambda: None, {}),
         ("mapping", mapping, {}),

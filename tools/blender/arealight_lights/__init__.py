@@ -1,6 +1,7 @@
 """Writes what Arealight reads with Blender's glTF exporter, once this add-on is enabled.
 
-Area lamps become lights of EXT_lights_area, where the exporter's "Punctual Lights" is ticked. Emissive meshes whose object has a custom
+Where the exporter's "Punctual Lights" is ticked, area lamps become lights of EXT_lights_area, and points and spots keep their radius and
+a spot its blend. Emissive meshes whose object has a custom
 property `arealight` with the name of a shape (disk, sphere, cylinder, pipe, capsule) become that shape, about their Z axis.
 """
 
@@ -36,6 +37,12 @@ class glTF2ExportUserExtension:
                 if node.extensions is None:
                     node.extensions = {}
                 node.extensions[NAME] = self.extensions.Extension(NAME, {"light": child}, required=False)
+        elif blender_object.type == "LIGHT" and blender_object.data.type in ("POINT", "SPOT"):
+            written = (node.extensions or {}).get("KHR_lights_punctual")
+            if written is not None:
+                said = lamps.round_light(blender_object.data.shadow_soft_size, *spot_of(blender_object.data))
+                light = written.extension["light"].extension
+                light["extras"] = {**(light.get("extras") or {}), "arealight": said}
         elif blender_object.type == "MESH" and isinstance(blender_object.get("arealight"), str):
             corners = [tuple(corner) for corner in blender_object.bound_box]
             low, high = (tuple(pick(axis) for axis in zip(*corners)) for pick in (min, max))
@@ -46,6 +53,11 @@ class glTF2ExportUserExtension:
             node.extras.pop("arealight", None)
             if said:
                 node.extras["arealight"] = said
+
+
+def spot_of(lamp):
+    """A spot's angle and blend; none of a point."""
+    return (lamp.spot_size, lamp.spot_blend) if lamp.type == "SPOT" else ()
 
 
 def light_of(blender_object, log):

@@ -48,6 +48,29 @@ def area_light(name, shape, size, axes, watts, color, normalize=True, spread=mat
     return light
 
 
+def round_light(radius, angle=None, blend=0.0):
+    """`extras.arealight` of a point of a radius, or of a spot of an angle, radians, and a blend as Cycles has it.
+
+    A spot is a disk here: by rows of degrees and factors its intensity is what Cycles has, a smooth step of the cosine.
+    """
+    # A lamp without a radius is a point to Cycles too: as small as casts no soft shadow
+    said = {"radius": max(radius, 1e-3)}
+    if angle is not None:
+        half = min(0.5 * angle, math.radians(89.0))
+        end = math.cos(half)
+        width = max((1.0 - end) * blend, 1e-4)
+
+        def factor(turn):
+            step = min(max((math.cos(turn) - end) / width, 0.0), 1.0)
+            return step * step * (3.0 - 2.0 * step) / math.cos(turn)
+
+        turns = [half * index / 90.0 for index in range(91)]
+        # Where a hard edge is, between the last two
+        turns[-1:] = [half * (1.0 - 1e-4), half] if blend < 0.01 else [half]
+        said["profile"] = [[math.degrees(turn), factor(turn)] for turn in turns]
+    return said
+
+
 def shape_light(shape, low, high):
     """`extras.arealight` for a mesh that stands for `shape`, from the corners of its box in its own space, along Blender's axes; or the
     reason why there is none."""

@@ -92,7 +92,7 @@ pub(crate) fn lights(
         }
         let extras = &light.extras["arealight"];
         let made = shape.and_then(|shape| {
-            let profile = profile(light)?;
+            let profile = profile(&light.extras["arealight"])?;
             let light = Light { name: name.clone(), radiance, shape, profile, ..Light::default() };
             openings::behind(light, extras, node)
         });
@@ -104,10 +104,9 @@ pub(crate) fn lights(
     Ok(lights)
 }
 
-/// What a file of ours says in `extras.arealight` of a light's angles: `spread`, as Blender has it, in
+/// What `extras.arealight` says of a light's angles: `spread`, as Blender has it, in
 /// radians, or `profile`, rows of degrees and factors.
-fn profile(light: &AreaLight) -> Result<Option<Profile>, String> {
-    let said = &light.extras["arealight"];
+pub(crate) fn profile(said: &Value) -> Result<Option<Profile>, String> {
     let made = match (&said["spread"], &said["profile"]) {
         (Value::Number(spread), _) => Profile::spread(spread.as_f64().unwrap_or(f64::NAN), LEVELS),
         (_, Value::Null) => return Ok(None),

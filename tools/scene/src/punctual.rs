@@ -1,7 +1,7 @@
 //! `KHR_lights_punctual`: points, spots and suns, which have no area. Where a size is given they are small
 //! spheres and disks of the same intensity.
 
-use crate::area_lights::{LEVELS, LUMENS_PER_WATT};
+use crate::area_lights::{self, LEVELS, LUMENS_PER_WATT};
 use crate::bounds::Bounds;
 use crate::document::Document;
 use crate::error::SceneError;
@@ -132,10 +132,16 @@ fn make(
     };
     let radiance = Vec3::from_array(light.color) * (light.intensity / LUMENS_PER_WATT * brightness) as f32;
     let profile = match light.kind.as_str() {
-        "spot" => Some(Profile::cone(light.spot.inner_cone_angle, light.spot.outer_cone_angle, LEVELS)),
+        "spot" => match area_lights::profile(&light.extras["arealight"])? {
+            None => {
+                let cone =
+                    Profile::cone(light.spot.inner_cone_angle, light.spot.outer_cone_angle, LEVELS);
+                Some(cone.map_err(|fault| fault.to_string())?)
+            }
+            profile => profile,
+        },
         _ => None,
     };
-    let profile = profile.transpose().map_err(|fault| fault.to_string())?;
     let made = Light { name: name.to_owned(), radiance, shape, profile, ..Light::default() };
     openings::behind(made, &light.extras["arealight"], node)
 }
