@@ -3,8 +3,8 @@
 
 // Tests lights against the bounds of a tile. What is found holds for every pixel:
 //
-// - A light is left out where it contributes to no lobe: it is wholly below the lobe's horizon, or the pixel
-//   is behind a flat light of one side.
+// - A light is left out where it contributes to no lobe: it is wholly below the lobe's horizon, the pixel is
+//   behind a flat light of one side, or in none of the light's groups.
 // - With CULL its contribution has bounds (tile_contribution.glsl).
 //
 // Comparisons are such that NaN leaves nothing out.
@@ -43,7 +43,7 @@ vec2 contribution(uint index) {
         bool coat_ends_at_surface = AREALIGHT_HAS_COAT_NORMAL ? AREALIGHT_CLIPS_AT_SURFACE : ends_at_surface;
         is_below = is_below && (is_below_coat || (coat_ends_at_surface && heights.surface.y < 0.0));
     }
-    bool is_dark = light.radiance == 0.0;
+    bool is_dark = light.radiance == 0.0 || (light.links != 0u && (light.links & tile_groups()) == 0u);
     if (tile_is_known() && (is_behind || is_below || is_dark)) {
         return vec2(0.0, -1.0);
     }

@@ -164,6 +164,11 @@ void reduce_sample(ivec2 pixel) {
     // Where numbers are infinite or NaN, nothing is known of the tile
     float known_distance = distance > 0.0 && distance < TILE_FAR ? distance : TILE_FAR;
     reduce_planes(SURFACE_PAIR, normal, position, has_surface);
+    if (HAS_LINKS) {
+        uvec4 bits = uvec4(1u, 2u, 4u, 8u) & (has_surface ? surface_groups(texel) : 0u);
+        uvec4 others = uvec4(16u, 32u, 64u, 128u) & (has_surface ? surface_groups(texel) : 0u);
+        tile_reduce(GROUPS_PAIR, vec4(bits), vec4(others));
+    }
 
     vec3 view = surface.view / (IS_ORTHOGRAPHIC ? sqrt(dot(surface.view, surface.view)) : distance);
     float cosine = dot(normal, view);
@@ -249,6 +254,12 @@ float tile_coat_spread() {
 // Whether they are known of every pixel that has a coat.
 bool tile_has_coat_horizon() {
     return tile_coat_spread() < TILE_FAR;
+}
+
+// The groups of its surfaces.
+uint tile_groups() {
+    vec4 bits = HAS_LINKS ? tile_maxima[2 * GROUPS_PAIR] + tile_maxima[2 * GROUPS_PAIR + 1] : vec4(255.0, vec3(0.0));
+    return uint(bits.x + bits.y + bits.z + bits.w);
 }
 
 bool tile_is_diffuse() {

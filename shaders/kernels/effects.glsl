@@ -50,6 +50,10 @@ const uint EFFECT_GLASS = 16777216u;
 const uint EFFECT_PROFILE = 33554432u;
 // Some light is seen through an opening.
 const uint EFFECT_OPENING = 67108864u;
+// Some light shines on surfaces of some groups alone, which the G-buffer has in its stencil.
+const uint EFFECT_LINKED = 134217728u;
+// Some profile is not round; EFFECT_PROFILE is set then, too.
+const uint EFFECT_AZIMUTH = 268435456u;
 
 // Some light has a profile or an opening.
 const uint EFFECTS_OF_SHAPED = EFFECT_PROFILE | EFFECT_OPENING;
@@ -66,6 +70,7 @@ const bool HAS_SHAPES = (EFFECTS & EFFECTS_OF_SHAPES) != 0u;
 const bool HAS_DISKS = (EFFECTS & EFFECT_ELLIPSE) != 0u;
 const bool HAS_SPHERES = (EFFECTS & EFFECT_SPHERE) != 0u;
 const bool HAS_TUBES = (EFFECTS & EFFECT_TUBE) != 0u;
+const bool HAS_LINKS = (EFFECTS & EFFECT_LINKED) != 0u;
 
 // Whether surfaces face away from the viewer: arealight_other_side.
 const bool IS_TRANSMITTED = (EFFECTS & EFFECT_TRANSMISSION) != 0u;
@@ -95,6 +100,7 @@ const int LOBES_FORMULA = 1;
 #endif
 #define AREALIGHT_TEXTURED_DISKS ((EFFECTS & EFFECT_TEXTURED_ELLIPSE) != 0u)
 #define AREALIGHT_PROFILES ((EFFECTS & EFFECT_PROFILE) != 0u)
+#define AREALIGHT_AZIMUTHS ((EFFECTS & EFFECT_AZIMUTH) != 0u)
 #define AREALIGHT_OPENINGS ((EFFECTS & EFFECT_OPENING) != 0u)
 #ifndef AREALIGHT_DIFFERENCE
 #define AREALIGHT_DIFFERENCE (FORM_FACTOR == FORM_FACTOR_DIFFERENCE)

@@ -55,4 +55,17 @@ const uint SHAPE_TUBE = 2u;
 
 const uint SHAPE_TWO_SIDED = 1u;
 
+// From here on, of either record's flags: the groups of surfaces that the light shines on, 0 for all.
+const uint LIGHT_LINKS_SHIFT = 8u;
+
+uint light_links(uint flags) {
+    return (flags >> LIGHT_LINKS_SHIFT) & 0xffu;
+}
+
+// Whether a light shines on surfaces of these groups.
+bool is_linked(uint flags, uint groups) {
+    uint links = light_links(flags);
+    return links == 0u || (links & groups) != 0u;
+}
+
 #endif

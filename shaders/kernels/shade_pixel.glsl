@@ -19,6 +19,14 @@ ivec2 visibility_pixel;
 vec3 visibility_position;
 #endif
 
+// The groups of the surface that is shaded.
+uint shaded_groups = 0xffu;
+
+// Whether a light of these flags shines on that.
+bool shines(uint flags) {
+    return !HAS_LINKS || is_linked(flags, shaded_groups);
+}
+
 // Adds what is reflected of the light of this radiance at an index, of PICK_SHAPE or 0.
 void add_light_at(inout PixelRadiance sum, uint index, vec3 radiance, ArealightReflected reflected) {
 #if AREALIGHT_HOST_VISIBILITY
@@ -33,6 +41,9 @@ void add_light_at(inout PixelRadiance sum, uint index, vec3 radiance, ArealightR
 
 void shade_polygon(inout PixelRadiance sum, ArealightPoint point, uint index) {
     ArealightGpuLight record = lights[index];
+    if (!shines(record.flags)) {
+        return;
+    }
     if (HAS_SHAPED && (record.flags & LIGHT_SHAPED) != 0u) {
         add_light_at(sum, index, record.radiance, arealight_reflected(point, load_shaped(record)));
     } else if (HAS_MESHES && (record.flags & LIGHT_MESH) != 0u) {
@@ -45,6 +56,9 @@ void shade_polygon(inout PixelRadiance sum, ArealightPoint point, uint index) {
 void shade_shape(inout PixelRadiance sum, ArealightPoint point, uint index) {
     ArealightGpuShape record = shapes[index];
     uint pick = PICK_SHAPE | index;
+    if (!shines(record.flags)) {
+        return;
+    }
     if (HAS_TUBES && record.kind == SHAPE_TUBE) {
         add_light_at(sum, pick, record.radiance, arealight_reflected(point, load_tube(record)));
     } else if (HAS_SPHERES && record.kind == SHAPE_SPHERE) {
@@ -72,7 +86,9 @@ PixelRadiance shade_surface(ivec2 pixel, ArealightSurface surface, LightList lis
         for (uint index = 0u; index < list.quad_count; index++) {
             uint light = light_at(list, index);
             ArealightGpuLight record = lights[light];
-            add_light_at(sum, light, record.radiance, arealight_reflected(point, load_quad(record)));
+            if (shines(record.flags)) {
+                add_light_at(sum, light, record.radiance, arealight_reflected(point, load_quad(record)));
+            }
         }
     }
     if (HAS_POLYGONS) {
@@ -148,6 +164,7 @@ PixelRadiance shade_samples(ivec2 texel, ivec2 pixel, LightList list, inout uint
     vec3 position;
     load_position_of(texel, pixel, ivec2(constants.size), position);
     ArealightSurface surface = load_seen_surface(texel, position);
+    shaded_groups = surface_groups(texel);
     PixelRadiance one = shade_surface(pixel, surface, list);
     if (G_BUFFER_SAMPLES > 1) {
         float part = float(1 + take_samples_of(texel, pixel, surface, samples)) / float(G_BUFFER_SAMPLES);

@@ -44,6 +44,7 @@ struct TileLight {
     float radiance;  // the sum of the channels
     float area;      // no larger area of it faces any point; a sphere's is that of its disk
     float least;     // the area that its least contribution is proportional to, or 0 where that is not known
+    uint links;      // the groups of surfaces that it shines on; 0 for all
     bool over_half_vectors; // its specular lobes are GGX itself, not the fitted ones
     bool is_bounded; // whether its contribution has bounds: it shows no image, and no parts of it overlap
     float distance;  // no pixel is farther from its center

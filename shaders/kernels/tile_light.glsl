@@ -39,6 +39,7 @@ TileLight polygon_light(uint index) {
     if (HAS_SHAPED && (record.flags & LIGHT_SHAPED) != 0u) {
         light.least = 0.0;
     }
+    light.links = HAS_LINKS ? light_links(record.flags) : 0u;
     // What an image shows may be brighter than the light, or black
     bool has_image = (EFFECTS & EFFECT_TEXTURED) != 0u && record.texture_layer != NO_LIGHT_TEXTURE;
     light.over_half_vectors = AREALIGHT_HAS_HALF_VECTORS && !has_image;
@@ -56,6 +57,7 @@ TileLight shape_light(uint index) {
     light.radiance = sum_of(shape.radiance);
     light.area = TILE_PI * (shape.radius * shape.radius);
     light.least = light.area;
+    light.links = HAS_LINKS ? light_links(shape.flags) : 0u;
     light.over_half_vectors = false;
     light.is_bounded = true;
     if (shape.kind == SHAPE_DISK) {
@@ -117,6 +119,8 @@ TileLight tile_light(uint index) {
     } else {
         light = shape_light(index - light_count());
     }
+    // Not every surface of the tile may have it
+    light.least = light.links != 0u ? 0.0 : light.least;
     light.center -= tile_origin();
     light.distance = sqrt(dot(light.center, light.center)) + tile_distance();
     light.margin = MARGIN * (light.distance + light.radius);

@@ -3,8 +3,9 @@
 
 // Maxima over the 64 pixels of a tile, in memory that the workgroup shares.
 
-// The maxima, in pairs of vectors: those of coats are the last.
-const int TILE_PAIRS = AREALIGHT_HAS_COAT ? 8 : 5;
+// The maxima, in pairs of vectors: those of coats come after what every tile has, and then the groups.
+const int GROUPS_PAIR = AREALIGHT_HAS_COAT ? 8 : 5;
+const int TILE_PAIRS = HAS_LINKS ? GROUPS_PAIR + 1 : GROUPS_PAIR;
 shared vec4 tile_maxima[2 * TILE_PAIRS];
 
 // Finds the maxima of eight values of each invocation's pixel: in two steps of eight. They are there after

@@ -3,7 +3,7 @@
 
 // Where a pixel of the frame is in the host's images, and from where it is seen. The including kernel has the
 // specialisation constant VIEW, position.glsl, g_buffer.glsl and shade_constants.glsl; it defines
-// STENCIL_BINDING where frames may have a stencil. The bits are those of
+// STENCIL_BINDING where frames may have a stencil, and has effects.glsl. The bits are those of
 // arealight::plan::ShadeOptions::view_bits.
 #include "camera.glsl"
 const uint VIEW_RECTANGLE = 2u;
@@ -35,6 +35,16 @@ bool passes_stencil(ivec2 texel) {
     }
 #endif
     return true;
+}
+
+// The groups of a texel's surface: the bits of its stencil.
+uint surface_groups(ivec2 texel) {
+#ifdef STENCIL_BINDING
+    if (HAS_LINKS) {
+        return texelFetch(g_stencil, texel, g_buffer_sample).r;
+    }
+#endif
+    return 0xffu;
 }
 
 #endif

@@ -35,6 +35,7 @@ pub fn scene_of(triangles: &[[DVec3; 3]], material: SceneMaterial) -> Scene {
             colors: [Triangle::WHITE; 3],
             material: 0,
             lamp: false,
+            groups: 0,
         }
     };
     Scene {

@@ -160,6 +160,7 @@ fn quad_rows() -> Vec<Row> {
         quads("quads", "exact, thin film", LOBES | Effects::THIN_FILM, exact),
         quads("quads", "half vectors, thin film", LOBES | Effects::THIN_FILM, half_vectors),
         quads("quads", "exact, multiple scattering", LOBES | Effects::MULTIPLE_SCATTERING, exact),
+        quads("quads", "exact, linked", LOBES | Effects::LINKED, exact),
         quads("quads", "exact, rough diffuse", LOBES | Effects::DIFFUSE_ROUGHNESS, exact),
         quads(
             "quads",
@@ -180,7 +181,8 @@ fn other_rows() -> Vec<Row> {
     let mips = Quality { footprint: Footprint::Mips, ..exact };
     let (polygon, mesh) = (Effects::POLYGON, Effects::POLYGON | Effects::MESH);
     // A profile or an opening is what any flat light may have: those that have none don't pay for it
-    let every_kind = (Effects::all() - Effects::SURFACES - Effects::SHAPED) | Effects::SPECULAR_INPUT;
+    let every_kind =
+        (Effects::all() - Effects::SURFACES - Effects::SHAPED - Effects::AZIMUTH) | Effects::SPECULAR_INPUT;
     let (disk, textured_disk) = (Effects::ELLIPSE, Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
     vec![
         // Other kinds of light in place of quads
@@ -196,6 +198,12 @@ fn other_rows() -> Vec<Row> {
         others("spheres", "exact", Effects::SPHERE, exact),
         others("tubes", "exact", Effects::TUBE, exact),
         others("lights with profiles", "exact", Effects::PROFILE, exact),
+        others(
+            "lights with profiles that are not round",
+            "exact",
+            Effects::PROFILE | Effects::AZIMUTH,
+            exact,
+        ),
         others("lights behind openings", "exact", Effects::OPENING, exact),
         others("lights with profiles behind openings", "exact", Effects::SHAPED, exact),
         // Several kinds

@@ -47,7 +47,7 @@ pub fn g_buffer(
             place.extend(1.0).to_array()
         });
         match plane {
-            Plane::Stencil => image.upload(&[0_u32], Usage::COMPUTE_READ)?,
+            Plane::Stencil => image.upload(&vec![0_u32; width * height], Usage::COMPUTE_READ)?,
             Plane::Motion => image.upload(&of[..1], Usage::COMPUTE_READ)?,
             Plane::BaseColor => {
                 let half: Vec<_> = of.iter().map(|texel| texel.map(f16::from_f32)).collect();

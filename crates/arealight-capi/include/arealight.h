@@ -108,6 +108,12 @@
 // Some light is seen through an opening.
 #define AREALIGHT_EFFECT_OPENING 67108864
 
+// Lights shine on surfaces of some groups alone, ArealightLight.links: AREALIGHT_PLANE_STENCIL is read.
+#define AREALIGHT_EFFECT_LINKED 134217728
+
+// Some profile is not round about the normal.
+#define AREALIGHT_EFFECT_AZIMUTH 268435456
+
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 
@@ -176,7 +182,7 @@
 #define AREALIGHT_PLANE_FILM 7
 
 // A stencil for each texel: the stencil aspect (s8_uint) or unsigned integers (r8_uint). May be 0 without
-// ArealightPassOptions.stencil.
+// ArealightPassOptions.stencil and AREALIGHT_EFFECT_LINKED.
 #define AREALIGHT_PLANE_STENCIL 8
 
 // Where a pixel's point was in the frame before less where it is, in parts of the image's width and height
@@ -452,10 +458,17 @@ typedef struct ArealightLight {
     double radius;
     // Of a tube: one of AREALIGHT_TUBE_*.
     uint32_t ends;
-    // How many pairs `profile` has.
-    uint32_t profile_pair_count;
-    // Null, or of a disk or convex polygon: pairs of degrees from the front normal, rising from 0 to 90, and
-    // a factor of the radiance, linear between them, 0 after the last.
+    // How many rows `profile` has.
+    uint32_t profile_row_count;
+    // How many factors a row has: 0 or 1 of a profile that is round about the front normal. More are at
+    // azimuths that divide the circle evenly, from where the outline's first edge goes, or a disk's
+    // `axis_u`, counter-clockwise as seen from behind.
+    uint32_t profile_azimuth_count;
+    // With AREALIGHT_EFFECT_LINKED, at most 255: it shines on surfaces whose stencil has any of these bits;
+    // 0: on all.
+    uint32_t links;
+    // Null, or of a disk or convex polygon: rows of degrees from the front normal, rising from 0 to 90, and
+    // factors of the radiance, linear between them, 0 after the last row.
     const double *profile;
     // Read only with `profile`: how many angles divide it, 1 to 180. Of 4 the error is 1 % on Lambert
     // surfaces and 3 % on glossy ones, of 8 less than half of it.
@@ -1378,7 +1391,7 @@ AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_images) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_buffers) == 20);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, dynamic_storage_buffers) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, reserved) == 28);
-AREALIGHT_ASSERT(sizeof(ArealightLight) == 264);
+AREALIGHT_ASSERT(sizeof(ArealightLight) == 272);
 AREALIGHT_ASSERT(offsetof(ArealightLight, name) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightLight, kind) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightLight, two_sided) == 12);
@@ -1397,15 +1410,17 @@ AREALIGHT_ASSERT(offsetof(ArealightLight, axis_u) == 104);
 AREALIGHT_ASSERT(offsetof(ArealightLight, axis_v) == 128);
 AREALIGHT_ASSERT(offsetof(ArealightLight, radius) == 152);
 AREALIGHT_ASSERT(offsetof(ArealightLight, ends) == 160);
-AREALIGHT_ASSERT(offsetof(ArealightLight, profile_pair_count) == 164);
-AREALIGHT_ASSERT(offsetof(ArealightLight, profile) == 168);
-AREALIGHT_ASSERT(offsetof(ArealightLight, profile_levels) == 176);
-AREALIGHT_ASSERT(offsetof(ArealightLight, has_opening) == 180);
-AREALIGHT_ASSERT(offsetof(ArealightLight, opening_center) == 184);
-AREALIGHT_ASSERT(offsetof(ArealightLight, opening_axis_u) == 208);
-AREALIGHT_ASSERT(offsetof(ArealightLight, opening_axis_v) == 232);
-AREALIGHT_ASSERT(offsetof(ArealightLight, opening_housed) == 256);
-AREALIGHT_ASSERT(offsetof(ArealightLight, reserved) == 260);
+AREALIGHT_ASSERT(offsetof(ArealightLight, profile_row_count) == 164);
+AREALIGHT_ASSERT(offsetof(ArealightLight, profile_azimuth_count) == 168);
+AREALIGHT_ASSERT(offsetof(ArealightLight, links) == 172);
+AREALIGHT_ASSERT(offsetof(ArealightLight, profile) == 176);
+AREALIGHT_ASSERT(offsetof(ArealightLight, profile_levels) == 184);
+AREALIGHT_ASSERT(offsetof(ArealightLight, has_opening) == 188);
+AREALIGHT_ASSERT(offsetof(ArealightLight, opening_center) == 192);
+AREALIGHT_ASSERT(offsetof(ArealightLight, opening_axis_u) == 216);
+AREALIGHT_ASSERT(offsetof(ArealightLight, opening_axis_v) == 240);
+AREALIGHT_ASSERT(offsetof(ArealightLight, opening_housed) == 264);
+AREALIGHT_ASSERT(offsetof(ArealightLight, reserved) == 268);
 AREALIGHT_ASSERT(sizeof(ArealightReach) == 80);
 AREALIGHT_ASSERT(offsetof(ArealightReach, center) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightReach, radius) == 24);

@@ -55,6 +55,10 @@ pub const AREALIGHT_EFFECT_GLASS: u32 = 16777216;
 pub const AREALIGHT_EFFECT_PROFILE: u32 = 33554432;
 /// Some light is seen through an opening.
 pub const AREALIGHT_EFFECT_OPENING: u32 = 67108864;
+/// Lights shine on surfaces of some groups alone, ArealightLight.links: AREALIGHT_PLANE_STENCIL is read.
+pub const AREALIGHT_EFFECT_LINKED: u32 = 134217728;
+/// Some profile is not round about the normal.
+pub const AREALIGHT_EFFECT_AZIMUTH: u32 = 268435456;
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
 /// As EXACT, and relative precision for lights that look small.
@@ -109,7 +113,7 @@ pub const AREALIGHT_PLANE_ANISOTROPY: u32 = 6;
 /// nanometres in b (rgba16f). May be 0 without AREALIGHT_EFFECT_THIN_FILM.
 pub const AREALIGHT_PLANE_FILM: u32 = 7;
 /// A stencil for each texel: the stencil aspect (s8_uint) or unsigned integers (r8_uint). May be 0 without
-/// ArealightPassOptions.stencil.
+/// ArealightPassOptions.stencil and AREALIGHT_EFFECT_LINKED.
 pub const AREALIGHT_PLANE_STENCIL: u32 = 8;
 /// Where a pixel's point was in the frame before less where it is, in parts of the image's width and height
 /// (rg16f). May be 0 but for a shadow pass with AREALIGHT_SHADOW_HISTORY_MOTION.

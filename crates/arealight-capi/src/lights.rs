@@ -226,6 +226,7 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
         texture: textured.then_some(LightTexture { layer: light.texture_layer, uvs }),
         profile,
         opening: has_opening.then_some(opening),
+        links: u8::try_from(light.links).map_err(|_| wrong("links", light.links, "at most 255"))?,
         shape,
     };
     if !holes.is_empty() {

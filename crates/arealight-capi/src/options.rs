@@ -117,6 +117,8 @@ mod tests {
             (c::AREALIGHT_EFFECT_GLASS, Effects::GLASS),
             (c::AREALIGHT_EFFECT_PROFILE, Effects::PROFILE),
             (c::AREALIGHT_EFFECT_OPENING, Effects::OPENING),
+            (c::AREALIGHT_EFFECT_LINKED, Effects::LINKED),
+            (c::AREALIGHT_EFFECT_AZIMUTH, Effects::AZIMUTH),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");
         }

@@ -235,6 +235,9 @@ pub struct ArealightLight {
     /// azimuths that divide the circle evenly, from where the outline's first edge goes, or a disk's
     /// `axis_u`, counter-clockwise as seen from behind.
     pub profile_azimuth_count: u32,
+    /// With AREALIGHT_EFFECT_LINKED, at most 255: it shines on surfaces whose stencil has any of these bits;
+    /// 0: on all.
+    pub links: u32,
     /// Null, or of a disk or convex polygon: rows of degrees from the front normal, rising from 0 to 90, and
     /// factors of the radiance, linear between them, 0 after the last row.
     pub profile: *const f64,

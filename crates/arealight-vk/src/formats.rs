@@ -125,7 +125,8 @@ mod tests {
         let planes = Planes::from_fn(|_| Format::R16G16B16A16_SFLOAT)
             .with(Plane::Position, Format::R32G32B32A32_SFLOAT)
             .with(Plane::BaseColor, Format::R8G8B8A8_SRGB)
-            .with(Plane::Specular, Format::R8G8B8A8_UNORM);
+            .with(Plane::Specular, Format::R8G8B8A8_UNORM)
+            .with(Plane::Stencil, Format::R8_UINT);
         ShadeFormats { planes, radiance: Format::R32G32B32A32_SFLOAT }
     }
 
@@ -192,7 +193,7 @@ mod tests {
         let unity = ShadeOptions { g_buffer: GBufferLayout::Unity, ..unreal };
         assert_eq!(field(ten_bits, unity), "normal");
         let stencil = ShadeOptions { stencil: true, ..options };
-        assert_eq!(field(right(), stencil), "stencil");
+        assert_eq!(field(with(Plane::Stencil, Format::R8_UNORM), stencil), "stencil");
         with(Plane::Stencil, Format::S8_UINT).check(stencil).unwrap();
         let half = ShadeOptions { format: RadianceFormat::Rgba16Float, ..options };
         assert_eq!(field(right(), half), "radiance");

@@ -166,7 +166,7 @@ impl ShadePass {
         let is_used = |name| match name {
             TILE_LISTS => false,
             LIGHT_COUNTS => self.options.light_counts,
-            _ => Plane::bound_at(name) != Some(Plane::Stencil) || self.options.stencil,
+            _ => Plane::bound_at(name) != Some(Plane::Stencil) || self.options.reads(Plane::Stencil),
         };
         accesses.retain(|access| is_used(access.name));
         if self.tiles.is_some() {

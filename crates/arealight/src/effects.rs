@@ -77,6 +77,11 @@ bitflags::bitflags! {
         const PROFILE = 1 << 25;
         /// Some light is seen through an opening ([`Light::opening`](crate::Light::opening)).
         const OPENING = 1 << 26;
+        /// Lights shine on surfaces of some groups alone ([`Light::links`](crate::Light::links)), so the
+        /// G-buffer's image of stencils is read. Said of surfaces; without it such lights shine on all.
+        const LINKED = 1 << 27;
+        /// Some profile is not round about the normal. Such a light needs [`Effects::PROFILE`], too.
+        const AZIMUTH = 1 << 28;
     }
 }
 
@@ -116,13 +121,18 @@ impl Effects {
         .union(Self::DIFFUSE_ROUGHNESS)
         .union(Self::SHEEN)
         .union(Self::ANISOTROPY)
-        .union(Self::THIN_FILM);
+        .union(Self::THIN_FILM)
+        .union(Self::LINKED);
+
+    /// What lights of any kind may have.
+    pub const OF_ANY_KIND: Self = Self::TWO_SIDED.union(Self::LINKED);
 
     /// What each pass over surfaces with these effects has, its radiance added to that of the one before:
     /// what is reflected, and what is let through below the same interface, with [`Effects::TRANSMISSION`] by
     /// an ideally diffusing sheet, with [`Effects::GLASS`] by a pane.
     pub fn passes(self) -> impl Iterator<Item = Self> {
-        let below_interface = Self::COUPLED | Self::SPECULAR_INPUT | Self::THIN_FILM | Self::TRANSMISSION;
+        let below_interface =
+            Self::COUPLED | Self::SPECULAR_INPUT | Self::THIN_FILM | Self::TRANSMISSION | Self::LINKED;
         let lets_through = Self::TRANSMISSION | Self::GLASS;
         let reflects = !self.intersects(lets_through) || self.intersects(Self::LOBES);
         let mut transmitted = (self & below_interface) | Self::TRANSMISSION;
@@ -162,6 +172,8 @@ impl Effects {
             (Self::GLASS, "glass"),
             (Self::PROFILE, "profile"),
             (Self::OPENING, "opening"),
+            (Self::LINKED, "linked"),
+            (Self::AZIMUTH, "azimuth"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))

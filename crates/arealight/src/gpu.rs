@@ -22,7 +22,8 @@ pub struct GpuLight {
     /// How many rows the outline has, or the faces of a mesh.
     pub vertex_count: u32,
     /// [`GpuLight::TWO_SIDED`], [`GpuLight::FLAT`], [`GpuLight::MESH`], [`GpuLight::QUAD`],
-    /// [`GpuLight::PROFILE`] and [`GpuLight::OPENING`], where they are so.
+    /// [`GpuLight::PROFILE`] and [`GpuLight::OPENING`], where they are so; links from
+    /// [`GpuLight::LINKS_SHIFT`] on.
     pub flags: u32,
     /// Layer of the light textures, or [`GpuLight::NO_TEXTURE`].
     pub texture_layer: u32,
@@ -50,6 +51,8 @@ impl GpuLight {
     pub const SHAPED: u32 = Self::PROFILE | Self::OPENING;
     /// Where that cosine begins.
     pub const PROFILE_END_SHIFT: u32 = 16;
+    /// Where [`Light::links`](crate::Light::links) begin, in flags of either record.
+    pub const LINKS_SHIFT: u32 = 8;
     /// No texture.
     pub const NO_TEXTURE: u32 = u32::MAX;
 }
@@ -74,7 +77,7 @@ pub struct GpuShape {
     pub detail: u32,
     /// The other half axis of a disk, else zero.
     pub axis_v: [f32; 3],
-    /// [`GpuShape::TWO_SIDED`] or zero.
+    /// [`GpuShape::TWO_SIDED`] or zero; links from [`GpuLight::LINKS_SHIFT`] on.
     pub flags: u32,
 }
 

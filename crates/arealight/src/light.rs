@@ -26,6 +26,11 @@ pub struct Light {
     /// What it is seen through, if not all around: of a polygon, concave ones too unless it has a profile, or
     /// of a disk.
     pub opening: Option<Opening>,
+    /// The groups of surfaces that it shines on, a bit each: of those whose stencil
+    /// ([`Plane::Stencil`](crate::Plane::Stencil)) has any of these bits. 0, the default, is every surface;
+    /// so is what else it says where surfaces lack [`Effects::LINKED`]. [Fog](crate::plan::MediumOptions) is
+    /// of every group.
+    pub links: u8,
     /// What shines.
     pub shape: LightShape,
 }
@@ -152,7 +157,9 @@ impl Light {
         let two_sided = self.two_sided && !matches!(self.shape, LightShape::Tube { .. });
         let mut effects = Effects::empty();
         effects.set(Effects::TWO_SIDED, two_sided);
+        effects.set(Effects::LINKED, self.links != 0);
         effects.set(Effects::PROFILE, self.profile.is_some());
+        effects.set(Effects::AZIMUTH, self.profile.as_ref().is_some_and(|it| !it.harmonics().is_empty()));
         effects.set(Effects::OPENING, self.opening.is_some());
         match self.shape {
             LightShape::Polygon(_) | LightShape::Mesh { .. } => {

@@ -64,7 +64,7 @@ impl LightSummary {
     /// The quads alone.
     #[must_use]
     pub fn quads(self) -> Self {
-        let effects = self.effects & Effects::TWO_SIDED;
+        let effects = self.effects & Effects::OF_ANY_KIND;
         Self { light_count: self.quad_count, shape_count: 0, effects, ..self }
     }
 }
@@ -255,7 +255,7 @@ const QUAD: u32 = 0;
 
 /// Where lights of these effects are in the order of records.
 fn rank(effects: Effects) -> u32 {
-    match effects - Effects::TWO_SIDED {
+    match effects - Effects::OF_ANY_KIND {
         kind if kind.is_empty() => QUAD,
         kind if kind.contains(Effects::ELLIPSE) => 2,
         kind if kind.contains(Effects::SPHERE) => 3,
@@ -279,7 +279,8 @@ fn check_rows(lights: &[Light]) -> Result<(), LightError> {
 
 fn flags(light: &Light) -> u32 {
     let flag = |on: bool, flag: u32| if on { flag } else { 0 };
-    flag(light.two_sided, GpuLight::TWO_SIDED)
+    u32::from(light.links) << GpuLight::LINKS_SHIFT
+        | flag(light.two_sided, GpuLight::TWO_SIDED)
         | flag(light.shape.is_flat(), GpuLight::FLAT)
         | flag(light.shape.is_mesh(), GpuLight::MESH)
         | flag(light.shape.is_convex_quad(), GpuLight::QUAD)

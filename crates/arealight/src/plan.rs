@@ -111,7 +111,9 @@ impl ShadeOptions {
 
     /// The effects of a pipeline: what surfaces need, and `lights`.
     pub fn effects(self, lights: LightSummary) -> Effects {
-        (self.surfaces & Effects::SURFACES) | (lights.effects - Effects::SURFACES)
+        let surfaces = self.surfaces & Effects::SURFACES;
+        let unlinked = Effects::LINKED - lights.effects;
+        (surfaces - unlinked) | (lights.effects - Effects::SURFACES)
     }
 
     /// Whether a plane is read. [`Plane::Motion`] is by shadows alone, whose options are not these.
@@ -119,7 +121,7 @@ impl ShadeOptions {
         match plane {
             Plane::Position | Plane::Normal | Plane::BaseColor => true,
             Plane::Specular if self.g_buffer != GBufferLayout::Arealight => true,
-            Plane::Stencil => self.stencil,
+            Plane::Stencil => self.stencil || self.surfaces.contains(Effects::LINKED),
             _ => self.surfaces.intersects(plane.effects()),
         }
     }
@@ -419,7 +421,10 @@ mod tests {
         // Neither has a say in what is the other's
         assert_eq!(options.effects(lights(Effects::SPECULAR_INPUT)), lobes);
         let all = ShadeOptions { surfaces: Effects::all(), ..options };
-        assert_eq!(all.effects(lights(Effects::empty())), Effects::SURFACES);
+        // But for links, which both have
+        assert_eq!(all.effects(lights(Effects::empty())), Effects::SURFACES - Effects::LINKED);
+        assert_eq!(all.effects(lights(Effects::LINKED)), Effects::SURFACES);
+        assert_eq!(options.effects(lights(Effects::LINKED)), lobes);
         assert!(all.reads(Plane::Specular) && !options.reads(Plane::Specular));
         let has_quads = |lights| {
             let values = shade_specialization(options, lights);

@@ -135,9 +135,9 @@ const ROWS: [Row; Plane::COUNT] = [
     row(
         Plane::Stencil,
         "g_stencil",
-        (Texels::Integers, Effects::empty()),
-        "stencil in r, of which eight bits are compared (s8_uint, r8_uint); read only with \
-         ShadeOptions::stencil, else bind any image",
+        (Texels::Integers, Effects::LINKED),
+        "stencil in r, of which eight bits are compared, or are the surface's groups with Effects::LINKED \
+         (s8_uint, r8_uint); read only with that or ShadeOptions::stencil, else bind any image",
     ),
     row(
         Plane::Motion,

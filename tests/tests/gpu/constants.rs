@@ -99,12 +99,12 @@ fn every_effect_is_asked_for_and_no_other() {
 fn flags_have_the_same_bits_in_glsl() {
     use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture, GpuTriangle};
     use gpu::{GpuLight, TextureLoadConstants as Load};
-    let flags = of!(GpuLight: TWO_SIDED FLAT MESH QUAD PROFILE OPENING SHAPED);
+    let flags = of!(GpuLight: TWO_SIDED FLAT MESH QUAD PROFILE OPENING LINKS_SHIFT SHAPED);
     assert_constants(LIGHT_RECORDS_GLSL, "LIGHT_", &flags);
     assert_constants(LIGHT_RECORDS_GLSL, "NO_LIGHT_", &[("TEXTURE", GpuLight::NO_TEXTURE.into())]);
     assert_constants(FOOTPRINT_GLSL, "AREALIGHT_NO_", &[("IMAGE", GpuLight::NO_TEXTURE.into())]);
     assert_constants(LIGHT_RECORDS_GLSL, "SHAPE_", &of!(gpu::GpuShape: DISK SPHERE TUBE TWO_SIDED));
-    assert_constants(SCENE_GLSL, "TRIANGLE_", &of!(GpuTriangle: LAMP TANGENTS MIRRORED COLORS));
+    assert_constants(SCENE_GLSL, "TRIANGLE_", &of!(GpuTriangle: LAMP TANGENTS MIRRORED COLORS GROUPS_SHIFT));
     assert_constants(SCENE_GLSL, "MATERIAL_", &of!(GpuMaterial: DOUBLE_SIDED ALPHA_MASK ALPHA_BLEND));
     assert_constants(SCENE_GLSL, "NO_TEXTURE", &[("", GpuMaterial::NO_TEXTURE.into())]);
     let texture = of!(GpuTexture: SRGB CLAMP_U CLAMP_V MIRROR_U MIRROR_V);

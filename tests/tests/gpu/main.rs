@@ -32,6 +32,7 @@ mod host_shadows;
 mod huge_lights;
 mod light_counts;
 mod light_textures;
+mod links;
 mod lobe_horizons;
 mod manifest;
 mod many_lights;

@@ -20,6 +20,7 @@ fn floor(texels: [u32; 4], material: SceneMaterial, wide: bool) -> (Scene, Camer
         colors: [Triangle::WHITE; 3],
         material: 0,
         lamp: false,
+        groups: 0,
     };
     let texture = Texture { image: 0, srgb: false, wrap_u: Wrap::Repeat, wrap_v: Wrap::Repeat };
     let image = Picture { name: "tiles".into(), width: 2, height: 2, texels: texels.to_vec() };

@@ -472,6 +472,7 @@ impl Case {
             profile: self.light.profile.clone(),
             opening: self.light.opening,
             shape,
+            ..Light::default()
         };
         let light = light.moved(&DAffine3::from_translation(-self.position));
         light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;

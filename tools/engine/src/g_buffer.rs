@@ -13,7 +13,7 @@ use std::ops::Index;
 /// The images of a G-buffer and the radiance image, all of one size: `g_buffer[Plane::Coat]`.
 pub struct GBuffer {
     /// By plane. In w of positions is one more than the triangle's index, exactly, and 0 where there is no
-    /// surface. What no frame of ours has, stencils and motion, is a texel.
+    /// surface. Motion, which no frame of ours has, is a texel.
     planes: Vec<Image>,
     /// Albedo of what is let through: the base colour of a pass with [`arealight::Effects::TRANSMISSION`].
     pub transmitted: Image,
@@ -46,7 +46,7 @@ impl GBuffer {
         let (full, half) = (vk::Format::R32G32B32A32_SFLOAT, vk::Format::R16G16B16A16_SFLOAT);
         let plane = |plane: Plane| match (plane, plane.texels()) {
             (Plane::BaseColor, _) => image(plane.name(), half, extent),
-            (_, Texels::Integers) => image(plane.name(), vk::Format::R32_UINT, [1; 2]),
+            (_, Texels::Integers) => image(plane.name(), vk::Format::R32_UINT, extent),
             (_, Texels::Offsets) => image(plane.name(), full, [1; 2]),
             _ => image(plane.name(), full, extent),
         };

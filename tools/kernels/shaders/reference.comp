@@ -29,6 +29,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define AREALIGHT_POLYGONS 1
 #define AREALIGHT_MESHES 1
 #define AREALIGHT_OPENINGS 1
+#define AREALIGHT_AZIMUTHS 1
 #define AREALIGHT_DISKS 1
 #define AREALIGHT_SPHERES 1
 #define AREALIGHT_TUBES 1
@@ -418,14 +419,19 @@ vec3 estimate_shape(Lobes lobes, vec3 direction, float by_brdf, ArealightGpuShap
     return shape.radiance * sum;
 }
 
-vec3 estimate(Lobes lobes, inout RandomState random) {
+// Whether a light of these flags shines on a triangle.
+bool shines_on(uint flags, uint triangle) {
+    return light_links(flags) == 0u || is_linked(flags, triangles[triangle].flags >> TRIANGLE_GROUPS_SHIFT);
+}
+
+vec3 estimate(Lobes lobes, uint triangle, inout RandomState random) {
     vec3 direction = sample_direction(lobes, random);
     float by_brdf = density(lobes, direction);
     vec3 radiance = vec3(0.0);
     for (uint index = 0u; index < constants.light_count; index++) {
         ArealightPolygonLight light = load_polygon(lights[index]);
         ArealightGpuLightSampling sampling = light_sampling[index];
-        if (sampling.triangle_count == 0u) {
+        if (sampling.triangle_count == 0u || !shines_on(lights[index].flags, triangle)) {
             continue;
         }
         radiance += estimate_by_light(lobes, index, light, sampling, random);
@@ -436,7 +442,9 @@ vec3 estimate(Lobes lobes, inout RandomState random) {
         }
     }
     for (uint index = 0u; index < constants.shape_count; index++) {
-        radiance += estimate_shape(lobes, direction, by_brdf, shapes[index], random);
+        if (shines_on(shapes[index].flags, triangle)) {
+            radiance += estimate_shape(lobes, direction, by_brdf, shapes[index], random);
+        }
     }
     return radiance;
 }
@@ -456,7 +464,7 @@ void main() {
     vec3 sum = vec3(0.0);
     for (uint index = 0u; index < constants.sample_count; index++) {
         RandomState random = random_begin(uvec3(pixel, constants.first_sample + index), constants.seed);
-        sum += estimate(lobes, random);
+        sum += estimate(lobes, uint(position.w) - 1u, random);
     }
     vec4 before = imageLoad(radiance_image, pixel);
     vec3 mean = sum / float(max(constants.sample_count, 1u));

@@ -18,6 +18,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define AREALIGHT_MESHES 1
 #define AREALIGHT_SHAPED 1
 #define AREALIGHT_OPENINGS 1
+#define AREALIGHT_AZIMUTHS 1
 #define AREALIGHT_DISKS 1
 #define AREALIGHT_SPHERES 1
 #define AREALIGHT_TUBES 1

@@ -18,6 +18,7 @@ layout(set = 0, binding = 11, rgba32f) uniform writeonly image2D out_sheen;
 layout(set = 0, binding = 12, rgba32f) uniform writeonly image2D out_anisotropy;
 layout(set = 0, binding = 13, rgba32f) uniform writeonly image2D out_film;
 layout(set = 0, binding = 14, rgba16f) uniform writeonly image2D out_transmitted;
+layout(set = 0, binding = 15, r32ui) uniform writeonly uimage2D out_stencil;
 
 layout(push_constant, std430) uniform VisibilityConstants {
     vec3 camera;
@@ -86,12 +87,14 @@ void main() {
         imageStore(out_anisotropy, pixel, vec4(0.0));
         imageStore(out_film, pixel, vec4(0.0));
         imageStore(out_transmitted, pixel, vec4(0.0));
+        imageStore(out_stencil, pixel, uvec4(0u));
         return;
     }
     ScenePoint point = scene_point(hit, pixel_steps(hit, constants.forward + (parallel ? vec3(0.0) : across),
                                                     vec2(size), parallel));
     imageStore(out_position, pixel, vec4(point.position, float(hit.triangle + 1u)));
     imageStore(out_normal, pixel, vec4(point.normal, point.roughness));
+    imageStore(out_stencil, pixel, uvec4(triangles[hit.triangle].flags >> TRIANGLE_GROUPS_SHIFT));
     imageStore(out_base_color, pixel, vec4(point.base_color, point.metalness));
     imageStore(out_specular, pixel, vec4(point.dielectric_f0, point.dielectric_f90));
     float below_coat = 1.0 - arealight_coat_share(point.coat, dot(point.coat.normal, direction));

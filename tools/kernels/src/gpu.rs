@@ -181,7 +181,8 @@ pub struct GpuTriangle {
     pub u2: f32,
     /// Texture coordinate v of the third vertex.
     pub v2: f32,
-    /// [`GpuTriangle::LAMP`], [`GpuTriangle::TANGENTS`], [`GpuTriangle::MIRRORED`], [`GpuTriangle::COLORS`].
+    /// [`GpuTriangle::LAMP`], [`GpuTriangle::TANGENTS`], [`GpuTriangle::MIRRORED`], [`GpuTriangle::COLORS`]; the
+    /// groups of [`arealight::Light::links`] from [`GpuTriangle::GROUPS_SHIFT`] on.
     pub flags: u32,
     /// Tangent at the first vertex: its place on the unfolded octahedron, of two numbers of 16 bits with a
     /// sign.
@@ -208,6 +209,8 @@ impl GpuTriangle {
     pub const MIRRORED: u32 = 4;
     /// Some of its vertices have a colour other than white.
     pub const COLORS: u32 = 8;
+    /// Where its groups begin.
+    pub const GROUPS_SHIFT: u32 = 8;
 }
 
 /// A material of the visibility kernel. Texture indices are [`GpuMaterial::NO_TEXTURE`] where there is none.

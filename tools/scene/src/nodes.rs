@@ -39,6 +39,10 @@ pub(crate) struct PlacedNode {
     pub ies_light: Option<Value>,
     /// What its `extras` say that its emissive mesh stands for.
     pub shape: Option<Value>,
+    /// The groups that its surfaces are in, a bit each.
+    pub groups: u8,
+    /// The groups that its light shines on; 0 for all.
+    pub links: u8,
 }
 
 /// Every node of the file's default scene, parents first.
@@ -69,6 +73,18 @@ pub(crate) fn place(document: &Document, messages: &mut Messages) -> Result<Vec<
             continue;
         }
         let extension = |name: &str| node.extensions.as_ref().and_then(|e| e.others.get(name)).cloned();
+        let mut said = said(&node.extras);
+        let mut bits = |name: &str| {
+            let value = said.as_mut().and_then(|said| said.as_object_mut()?.remove(name));
+            let bits = value.as_ref().map(|value| value.as_u64().and_then(|bits| u8::try_from(bits).ok()));
+            if bits == Some(None) {
+                let text = format!("extras.arealight.{name} must be a whole number from 0 to 255: left out");
+                messages.warn(field(), text);
+            }
+            bits.flatten().unwrap_or_default()
+        };
+        let (groups, links) = (bits("groups"), bits("links"));
+        let said = said.filter(|said| said.as_object().is_none_or(|object| !object.is_empty()));
         let once = PlacedNode {
             index,
             number: placed.len(),
@@ -81,7 +97,9 @@ pub(crate) fn place(document: &Document, messages: &mut Messages) -> Result<Vec<
             area_light: extension(AREA_LIGHTS),
             punctual_light: extension(PUNCTUAL_LIGHTS),
             ies_light: extension(IES_LIGHTS),
-            shape: said(&node.extras),
+            shape: said,
+            groups,
+            links,
         };
         match transforms::of_instances(document, index, node, placed.len())? {
             None => placed.push(once),
@@ -101,6 +119,8 @@ pub(crate) fn place(document: &Document, messages: &mut Messages) -> Result<Vec<
                     area_light: None,
                     punctual_light: None,
                     ies_light: None,
+                    links: once.links,
+                    groups: once.groups,
                     index,
                 };
                 let instances: Vec<PlacedNode> = instances.into_iter().enumerate().map(instance).collect();

@@ -50,6 +50,7 @@ pub(crate) fn is_said(extras: &Value) -> bool {
 
 /// A node's light as it is seen: behind what `extras.arealight` says, checked; of a grid a light a cell.
 pub(crate) fn behind(light: Light, extras: &Value, node: &PlacedNode) -> Result<Vec<Light>, String> {
+    let light = Light { links: node.links, ..light };
     let said = if is_said(extras) {
         Said::deserialize(extras).map_err(|error| format!("extras.arealight: {error}"))?
     } else {

@@ -134,8 +134,7 @@ fn make(
     let profile = match light.kind.as_str() {
         "spot" => match area_lights::profile(&light.extras["arealight"])? {
             None => {
-                let cone =
-                    Profile::cone(light.spot.inner_cone_angle, light.spot.outer_cone_angle, LEVELS);
+                let cone = Profile::cone(light.spot.inner_cone_angle, light.spot.outer_cone_angle, LEVELS);
                 Some(cone.map_err(|fault| fault.to_string())?)
             }
             profile => profile,

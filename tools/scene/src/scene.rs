@@ -95,6 +95,8 @@ pub struct Triangle {
     /// It is what one of [`Scene::lights`] looks like. A lamp blocks no light: neither its own, which is
     /// where the lamp is, nor another's.
     pub lamp: bool,
+    /// The groups that it is in, for [`Light::links`].
+    pub groups: u8,
 }
 
 impl Triangle {

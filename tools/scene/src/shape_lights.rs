@@ -68,7 +68,7 @@ pub(crate) fn light(
         // Solids shine outwards, whatever their material says
         let two_sided = material.double_sided && matches!(shape, LightShape::Disk { .. });
         let (name, radiance) = (instance.name.clone(), material.emission);
-        let light = Light { name, radiance, two_sided, shape, ..Light::default() };
+        let light = Light { name, radiance, two_sided, links: node.links, shape, ..Light::default() };
         light.validate().map(|()| (light, image)).map_err(|error| error.to_string())
     });
     match &light {

@@ -15,7 +15,8 @@ impl Light {
         let texture_layer = self.disk_texture()?;
         let empty = GpuShape {
             radiance: self.radiance.to_array(),
-            flags: if self.two_sided { GpuShape::TWO_SIDED } else { 0 },
+            flags: u32::from(self.links) << GpuLight::LINKS_SHIFT
+                | if self.two_sided { GpuShape::TWO_SIDED } else { 0 },
             ..bytemuck::Zeroable::zeroed()
         };
         match self.shape {

@@ -84,7 +84,7 @@ float arealight_profile_factor(uint profile, vec3 normal, vec3 offset) {
     float square = dot(side, side);
     float factor = arealight_profile_place(profile, square, height * height).y;
     vec4 head = arealight_bridge_profile(profile);
-    if (head.w > 0.0) {
+    if (AREALIGHT_HAS_AZIMUTHS && head.w > 0.0) {
         float whole = square + height * height;
         float part = sqrt(head.z * square / max(whole + sqrt(whole) * abs(height), AREALIGHT_LEAST_SQUARE));
         factor *= arealight_profile_azimuth(arealight_azimuth_row(profile, head.y), mat3(1.0), normal, -side,

@@ -298,7 +298,7 @@ float arealight_profile_mean(ArealightLocalShaped local, ArealightRingLobe lobe,
     ends += narrow * vec2(middle + width - ends.y, middle - width - ends.x);
     bool is_known = square > 0.0 && square < 3e38;
     float about = 1.0;
-    if (is_known && local.azimuth > 0u) {
+    if (AREALIGHT_HAS_AZIMUTHS && is_known && local.azimuth > 0u) {
         float gathered = min(apart / max(middle, 1e-18), 1.0)
             * arealight_gathered(form_factor * shrunk, middle, first, last);
         about = arealight_profile_azimuth(local.azimuth, local.polygon.to_frame, local.normal, -side,

@@ -54,9 +54,9 @@ fn point(case: &SupportedCase, images: &mut Images) -> EvalPoint {
         shape: LightShape::Polygon(case.light.vertices.clone()),
         radiance: case.light.radiance.as_vec3(),
         two_sided: case.light.two_sided,
-        texture: None,
         profile: case.light.profile.clone(),
         opening: case.light.opening,
+        ..Light::default()
     };
     if let Some((image, texture)) = shown {
         images.show(&mut light, &image.texture, texture.uv.clone());

@@ -3,7 +3,7 @@
 
 use crate::writer::Writer;
 use crate::{panel_with, warnings};
-use arealight::LightShape;
+use arealight::{Effects, LightShape};
 use arealight_scene::{LUMENS_PER_WATT, LoadOptions, Scene, SceneError};
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
@@ -101,6 +101,27 @@ fn what_a_light_is_seen_through_is_in_its_extras() {
         let warnings = warnings(&scene);
         assert!(scene.lights.is_empty() && warnings[0].contains(expected), "{warnings:?}");
     }
+}
+
+#[test]
+fn what_lights_shine_on_is_in_their_nodes_extras() {
+    let said = |links: Value, groups: Value| {
+        let light = json!({ "type": "point", "intensity": 683.0 });
+        let mut writer = file(&light, json!({ "extras": { "arealight": { "links": links } } }));
+        writer.root["nodes"][0]["extras"] = json!({ "arealight": { "groups": groups } });
+        read(writer, Some(RADIUS)).unwrap()
+    };
+    let scene = said(json!(4), json!(5));
+    assert_eq!(scene.lights.iter().map(|light| light.links).collect::<Vec<_>>(), [4]);
+    assert!(scene.triangles.iter().all(|triangle| triangle.groups == 5));
+    assert!(scene.surfaces().contains(Effects::LINKED) && warnings(&scene).is_empty());
+    // The twin, and what is none
+    assert!(!said(json!(0), json!(5)).surfaces().contains(Effects::LINKED));
+    let scene = said(json!(256), json!("all"));
+    let text = |name, node| {
+        format!("nodes[{node}]: extras.arealight.{name} must be a whole number from 0 to 255: left out")
+    };
+    assert_eq!(warnings(&scene), [text("groups", 0), text("links", 1)]);
 }
 
 #[test]

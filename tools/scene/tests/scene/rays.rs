@@ -17,6 +17,7 @@ fn scene_of(triangles: &[[DVec3; 3]], double_sided: bool) -> Scene {
         colors: [Triangle::WHITE; 3],
         material: 0,
         lamp: false,
+        groups: 0,
     };
     scene.triangles = triangles.iter().map(triangle).collect();
     scene

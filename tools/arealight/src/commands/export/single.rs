@@ -29,7 +29,7 @@ pub fn resolved(mut text: String, effects: Effects) -> String {
     text
 }
 
-/// The option that switches an effect, or would: three need none.
+/// The option that switches an effect, or would: four need none.
 fn option_of(effect: Effects) -> String {
     match effect.to_string().as_str() {
         "glossy" => "SPECULAR".into(),
@@ -37,7 +37,9 @@ fn option_of(effect: Effects) -> String {
         "mesh" => "MESHES".into(),
         "textured" => "TEXTURED_POLYGONS".into(),
         "textured_ellipse" => "TEXTURED_DISKS".into(),
-        name @ ("polygon" | "sphere" | "tube" | "opening" | "profile") => name.to_uppercase() + "S",
+        name @ ("polygon" | "sphere" | "tube" | "opening" | "profile" | "azimuth") => {
+            name.to_uppercase() + "S"
+        }
         name => name.to_uppercase(),
     }
 }
@@ -119,7 +121,8 @@ mod tests {
         let without = text(Effects::empty());
         let idle = Effects::all().iter().filter(|effect| text(*effect) == without);
         let idle: Effects = idle.collect();
-        assert_eq!(idle, Effects::SPECULAR_INPUT | Effects::TRANSMISSION | Effects::GLASS);
+        let expected = Effects::SPECULAR_INPUT | Effects::TRANSMISSION | Effects::GLASS | Effects::LINKED;
+        assert_eq!(idle, expected);
         let on = text(Effects::GLOSSY | Effects::TEXTURED);
         for line in ["SPECULAR 1", "DIFFUSE 0", "LIGHT_TEXTURES 1", "TEXTURED_DISKS 0"] {
             assert!(on.contains(&format!("#define AREALIGHT_{line}\n")), "{line}");
