@@ -258,7 +258,10 @@ bool tile_has_coat_horizon() {
 
 // The groups of its surfaces.
 uint tile_groups() {
-    vec4 bits = HAS_LINKS ? tile_maxima[2 * GROUPS_PAIR] + tile_maxima[2 * GROUPS_PAIR + 1] : vec4(255.0, vec3(0.0));
+    vec4 bits = vec4(255.0, vec3(0.0));
+    if (HAS_LINKS) {
+        bits = tile_maxima[2 * GROUPS_PAIR] + tile_maxima[2 * GROUPS_PAIR + 1];
+    }
     return uint(bits.x + bits.y + bits.z + bits.w);
 }
 

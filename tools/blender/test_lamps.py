@@ -43,6 +43,19 @@ class Lamps(unittest.TestCase):
     def test_lamps_that_are_not_normalized_shine_by_area(self):
         self.assertAlmostEqual(self.flux(self.light("RECTANGLE", normalize=False), "RECTANGLE"), 200.0)
 
+    def test_spots_are_disks_of_their_intensity(self):
+        said = lamps.round_light(0.2, math.radians(60.0), 0.5)
+        self.assertEqual(said["radius"], 0.2)
+        # Full on its axis, half in the middle of the blend of the cosine, and nothing at its edge
+        self.assertEqual(said["profile"][0], [0.0, 1.0])
+        middle = math.acos(math.cos(math.radians(30.0)) + 0.25 * (1.0 - math.cos(math.radians(30.0))))
+        below = max(row for row in said["profile"] if row[0] <= math.degrees(middle))
+        self.assertAlmostEqual(below[1] * math.cos(math.radians(below[0])), 0.5, delta=0.05)
+        self.assertEqual([round(x, 9) for x in said["profile"][-1]], [30.0, 0.0])
+        hard = lamps.round_light(0.2, math.radians(60.0), 0.0)["profile"]
+        self.assertAlmostEqual(hard[-2][1] * math.cos(math.radians(hard[-2][0])), 1.0, delta=0.05)
+        self.assertEqual(lamps.round_light(0.0), {"radius": 1e-3})
+
     def test_nothing_is_no_light(self):
         self.assertIsNone(self.light("RECTANGLE", size=(0.0, 1.0)))
         self.assertIsNone(lamps.area_light("dark", "DISK", (1, 1), (1, 1, 1), 0.0, (1, 1, 1)))

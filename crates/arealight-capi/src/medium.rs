@@ -96,20 +96,8 @@ pub unsafe extern "C" fn arealight_medium_pass_create(
     medium: *const ArealightMediumOptions,
     out: *mut *mut ArealightMediumPass,
 ) -> ArealightResult {
-    // SAFETY: the same contract; the pass is the host's to destroy.
-    call(|| unsafe { create(arealight, options, medium, out) })
-}
-
-/// # Safety
-/// Pointers are null or valid.
-unsafe fn create(
-    arealight: *const Arealight,
-    options: *const ArealightPassOptions,
-    medium: *const ArealightMediumOptions,
-    out: *mut *mut ArealightMediumPass,
-) -> Result<(), Failure> {
     // SAFETY: the same contract; the host vouches for the module.
-    unsafe {
+    call(|| unsafe {
         arguments::write(out, std::ptr::null_mut(), "out")?;
         let arealight = handles::borrow(arealight, "arealight")?;
         let shade = shade_options(arguments::read(options, "options")?)?;
@@ -118,7 +106,7 @@ unsafe fn create(
         let (module, host_set) = host_module(&medium.module, true)?;
         let pass = MediumPass::new(arealight.context(), MediumPassInfo { options, module, host_set })?;
         arguments::write(out, handles::give(ArealightMediumPass { pass }), "out")
-    }
+    })
 }
 
 fn medium_options(shade: ShadeOptions, medium: &ArealightMediumOptions) -> Result<MediumOptions, Failure> {

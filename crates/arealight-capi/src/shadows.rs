@@ -125,20 +125,8 @@ pub unsafe extern "C" fn arealight_shadow_pass_create(
     shadows: *const ArealightShadowOptions,
     out: *mut *mut ArealightShadowPass,
 ) -> ArealightResult {
-    // SAFETY: the same contract; the pass is the host's to destroy.
-    call(|| unsafe { create(arealight, options, shadows, out) })
-}
-
-/// # Safety
-/// Pointers are null or valid.
-unsafe fn create(
-    arealight: *const Arealight,
-    options: *const ArealightPassOptions,
-    shadows: *const ArealightShadowOptions,
-    out: *mut *mut ArealightShadowPass,
-) -> Result<(), Failure> {
     // SAFETY: the same contract; the host vouches for the module.
-    unsafe {
+    call(|| unsafe {
         arguments::write(out, std::ptr::null_mut(), "out")?;
         let arealight = handles::borrow(arealight, "arealight")?;
         let options = shade_options(arguments::read(options, "options")?)?;
@@ -148,7 +136,7 @@ unsafe fn create(
         let info = ShadowPassInfo { options, shadows, module, host_set };
         let pass = ShadowPass::new(arealight.context(), info)?;
         arguments::write(out, handles::give(ArealightShadowPass { pass }), "out")
-    }
+    })
 }
 
 fn shadow_options(options: &ArealightShadowOptions) -> Result<ShadowOptions, Failure> {

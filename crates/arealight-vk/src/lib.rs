@@ -51,6 +51,7 @@ mod error;
 mod formats;
 mod frame;
 mod image;
+mod image_memory;
 mod layouts;
 mod light_textures;
 mod limits;

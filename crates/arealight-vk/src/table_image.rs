@@ -3,6 +3,7 @@
 use crate::context::Context;
 use crate::error::Error;
 use crate::image::{Image, ImageInfo};
+use crate::image_memory::image_memory;
 use crate::resource::Resource;
 use arealight::LightTable;
 use arealight::table::LAYERS;
@@ -87,49 +88,7 @@ impl TableImage {
         self.format.bytes(table)
     }
 
-    /// What memory the image needs.
-    pub fn memory_requirements(&self) -> vk::MemoryRequirements {
-        self.image.memory_requirements()
-    }
-
-    /// Binds memory of the host, and makes the view.
-    ///
-    /// # Safety
-    /// - Called once. `memory` and `offset` satisfy [`TableImage::memory_requirements`].
-    /// - The memory is freed only after the table image is dropped.
-    ///
-    /// # Errors
-    /// [`Error::Vulkan`] where a call fails.
-    pub unsafe fn bind_memory(
-        &mut self,
-        memory: vk::DeviceMemory,
-        offset: vk::DeviceSize,
-    ) -> Result<(), Error> {
-        // SAFETY: the same contract.
-        unsafe { self.image.bind_memory(memory, offset) }
-    }
-
-    /// Allocates memory through gpu-allocator and binds it: steps 2 and 3 in one.
-    ///
-    /// The allocation is the host's: give it back to the allocator after the table image is dropped.
-    ///
-    /// # Safety
-    /// Called once, with an allocator of the same device.
-    ///
-    /// # Errors
-    /// [`Error::Vulkan`] with `ERROR_OUT_OF_DEVICE_MEMORY` where the allocator has none, or where a call
-    /// fails (then the memory was given back, and the table image is only good for dropping).
-    #[cfg(feature = "gpu-allocator")]
-    pub unsafe fn allocate(
-        &mut self,
-        allocator: &mut gpu_allocator::vulkan::Allocator,
-    ) -> Result<gpu_allocator::vulkan::Allocation, Error> {
-        let requirements = self.memory_requirements();
-        crate::memory::allocate(allocator, "arealight table", requirements, |memory, offset| {
-            // SAFETY: the memory was allocated for this image's requirements.
-            unsafe { self.bind_memory(memory, offset) }
-        })
-    }
+    image_memory!("arealight table");
 
     /// Records the copy from a staging buffer, with the barriers around it: afterwards the image is in layout
     /// [`TableImage::LAYOUT`], visible to compute and fragment shaders.

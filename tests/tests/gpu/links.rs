@@ -92,8 +92,8 @@ fn linked_scene() -> (Scene, Vec<Light>) {
 
 #[test]
 fn linked_lights_have_shadows_and_monte_carlo_has_them_too() {
-    let Some(engine) = TestEngine::new() else { return };
     const SIDE: [u32; 2] = [32, 32];
+    let Some(engine) = TestEngine::new() else { return };
     let (scene, lights) = linked_scene();
     let buffers = SceneBuffers::new(&scene, DVec3::ZERO).unwrap();
     let look = Camera::framing("", [DVec3::ZERO].into_iter().collect(), DVec3::NEG_Y, DVec3::Z, 1.0);
@@ -149,7 +149,9 @@ fn tiles_leave_out_lights_of_other_groups() {
         counts.lights
     };
     let fewer = count(&lights);
-    lights.iter_mut().for_each(|light| light.links = 0);
+    for light in &mut lights {
+        light.links = 0;
+    }
     let all = count(&lights);
     // Tiles of the floor alone have one of the two
     assert!(fewer < all * 3 / 4, "{fewer} of {all}");

@@ -66,7 +66,7 @@ def round_light(radius, angle=None, blend=0.0):
 
         turns = [half * index / 90.0 for index in range(91)]
         # Where a hard edge is, between the last two
-        turns[-1:] = [half * (1.0 - 1e-4), half] if blend < 0.01 else [half]
+        turns[-1:] = [math.acos(end + width), half] if blend < 0.01 else [half]
         said["profile"] = [[math.degrees(turn), factor(turn)] for turn in turns]
     return said
 

@@ -181,8 +181,8 @@ pub struct GpuTriangle {
     pub u2: f32,
     /// Texture coordinate v of the third vertex.
     pub v2: f32,
-    /// [`GpuTriangle::LAMP`], [`GpuTriangle::TANGENTS`], [`GpuTriangle::MIRRORED`], [`GpuTriangle::COLORS`]; the
-    /// groups of [`arealight::Light::links`] from [`GpuTriangle::GROUPS_SHIFT`] on.
+    /// [`GpuTriangle::LAMP`], [`GpuTriangle::TANGENTS`], [`GpuTriangle::MIRRORED`], [`GpuTriangle::COLORS`];
+    /// the groups of [`arealight::Light::links`] from [`GpuTriangle::GROUPS_SHIFT`] on.
     pub flags: u32,
     /// Tangent at the first vertex: its place on the unfolded octahedron, of two numbers of 16 bits with a
     /// sign.

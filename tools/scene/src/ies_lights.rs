@@ -12,6 +12,7 @@ use arealight::{IesProfile, Light, LightShape, Profile};
 use glam::Vec3;
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::f64::consts::PI;
 
 #[derive(Deserialize, Clone)]
@@ -58,13 +59,13 @@ pub(crate) fn lights(
     for (node, place, light) in said {
         let light: &IesLight = &light;
         let name = node_lights::name(node, light.name.as_ref(), "luminaire", place);
-        if !files.contains_key(&place) {
+        if let Entry::Vacant(unread) = files.entry(place) {
             let field = format!("extensions.{IES_LIGHTS}.lights[{place}]");
             let read = luminaire(&text(document, light, &field)?);
             if let Ok(read) = &read {
                 warn_of_upward_light(&read.file, &name, messages);
             }
-            files.insert(place, read.map_err(|problem| format!("{field}: {problem}")));
+            unread.insert(read.map_err(|problem| format!("{field}: {problem}")));
         }
         let made =
             files[&place].as_ref().map_err(Clone::clone).and_then(|file| make(file, node, size, &name));

@@ -75,7 +75,9 @@ pub(crate) fn lights(
     let mut lights = Vec::new();
     for (node, place, light) in said {
         let light: &PunctualLight = &light;
-        let Some(radius) = light.extras["arealight"]["radius"].as_f64().or(size) else {
+        // A sun's size is its own
+        let own = (light.kind == "directional").then_some(SUN_RADIUS);
+        let Some(radius) = light.extras["arealight"]["radius"].as_f64().or(size).or(own) else {
             messages.warn(
                 PUNCTUAL_LIGHTS,
                 "points have no area: lights without a size are left out (--light-size gives them one)",

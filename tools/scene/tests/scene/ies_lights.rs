@@ -27,8 +27,8 @@ fn file(text: &str, instance: Value) -> Writer {
     let mut instance = instance;
     instance["light"] = json!(0);
     let rotation = [-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2];
-    let node = json!({ "rotation": rotation, "scale": [3.0, 3.0, 3.0], "extensions": { "EXT_lights_ies": instance } });
-    writer.node(node);
+    let extensions = json!({ "EXT_lights_ies": instance });
+    writer.node(json!({ "rotation": rotation, "scale": [3.0, 3.0, 3.0], "extensions": extensions }));
     writer
 }
 

@@ -126,7 +126,9 @@ fn what_lights_shine_on_is_in_their_nodes_extras() {
 
 #[test]
 fn a_sun_lights_the_whole_scene_alike() {
-    let scene = with_size(&json!({ "type": "directional", "intensity": 2.0 * LUMENS_PER_WATT }), json!({}));
+    let sun = json!({ "type": "directional", "intensity": 2.0 * LUMENS_PER_WATT });
+    let scene = read(file(&sun, json!({})), None).unwrap();
+    assert_eq!(scene.lights, with_size(&sun, json!({})).lights, "its size is its own");
     let light = &scene.lights[0];
     let LightShape::Disk { center, axis_u, .. } = light.shape else { panic!("a disk") };
     // It shines along -z: it is where z is large

@@ -50,7 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 
     let path = scene.as_ref().map_or_else(String::new, |path| format!("{} ", path.display()));
     let command = format!(
-        "arealight bench materials {path}--size {size} --samples {samples} --markdown docs/materials.md"
+        "arealight bench materials {path}--size {size} --samples {samples} --markdown docs/data/materials.md"
     );
     let section = found.to_markdown(&command);
     ends.section(&found, Markers::MATERIALS, &section, &found.to_text())?;
