@@ -96,6 +96,7 @@ impl AreaLight {
             profile: self.profile.clone(),
             opening: self.opening,
             shape: self.shape.clone(),
+            ..Light::default()
         };
         Some(light.moved(&world))
     }

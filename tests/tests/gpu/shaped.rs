@@ -221,6 +221,38 @@ fn rings_follow_their_float64_twin() {
     }
 }
 
+#[test]
+fn a_corner_on_a_rim_is_not_all_of_the_rim() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut random = Random::new(9);
+    let spot = profiles(4)[0].clone();
+    let mut points = points(13, &lambert_surface(), 3000);
+    for (index, given) in points.iter_mut().enumerate() {
+        let corner = given.light.shape.vertices()[0];
+        let normal = given.light.shape.area_vector().normalize_or_zero();
+        let cosine = spot.levels()[index % spot.levels().len()];
+        let tangent = (1.0 - cosine * cosine).sqrt() / cosine;
+        // At a level's angle to rounding, from without the light's outline or over it
+        let aside = random.direction().reject_from(normal).normalize_or_zero();
+        let part = 1.0 + 10_f64.powf(random.between(-8.0, -4.5)) * if index % 2 == 0 { 1.0 } else { -1.0 };
+        let height = random.between(0.2, 2.0);
+        given.position = corner + normal * height + aside * (height * tangent * part);
+        given.normal = -normal;
+        given.light.profile = Some(spot.clone());
+    }
+    let answers = engine.eval(&points, Quality::default()).unwrap();
+    let mut comparison = Comparison::new("corners on rims".to_owned());
+    let mut lit = 0;
+    for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
+        let expected = twin(Quality::default(), given);
+        lit += usize::from(expected.x > 1e-3);
+        comparison.add_color(*answer, expected, 2e-3, || format!("point {index}: {given:?}"));
+    }
+    println!("{lit} are lit, {:e}", comparison.largest());
+    assert!(lit > 500, "{lit}");
+    comparison.assert_all();
+}
+
 /// Lights as of [`points`], each seen through an opening: between the point and the light, of every size;
 /// behind the point; the size of the light from the point to rounding; and with sides through its corners.
 fn opened_points(seed: u64, surface: &Surface, count: usize, has_profiles: bool) -> Vec<EvalPoint> {

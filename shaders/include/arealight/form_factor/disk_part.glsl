@@ -40,8 +40,8 @@ float arealight_disk_arc_scale(float cosine, float chords) {
 }
 
 // The arc of a rim of this squared radius from one point of it to another, counter-clockwise about a unit
-// normal. Where both are one point to rounding, it is all of the rim if `outside`: the way between them that
-// was left, as a part of the squared radius, is farther from the rim than rounding.
+// normal. Where both are one point to rounding, it is all of the rim if the outline holds the disk's center
+// and `outside`, how far it was from the rim between them as a part of the squared radius, is no rounding.
 ArealightDiskArc arealight_disk_arc(vec3 from, vec3 to, vec3 normal, float square, float outside) {
     vec2 turn = vec2(dot(from, to), dot(normal, cross(from, to))) / square;
     if (turn.x > 0.0 && abs(turn.y) < 2e-6) {

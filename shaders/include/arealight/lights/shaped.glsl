@@ -213,7 +213,8 @@ vec3 arealight_level_vector(mat3 space, ArealightLocalShaped local, float square
                 arealight_perpendiculars(local.normal, corner, other);
                 corner *= sqrt(square);
             } else if (comes && step > 0u) {
-                arc = arealight_disk_arc(left, from, local.normal, square, outside / square);
+                arc = arealight_disk_arc(left, from, local.normal, square,
+                                         local.holds_foot ? outside / square : 0.0);
             }
             int arcs = arc.chords - 1;
             bool closes = AREALIGHT_HAS_OPENINGS && step == count && local.opening.is_between;
