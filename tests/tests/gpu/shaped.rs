@@ -167,8 +167,8 @@ fn a_street_lamp_is_not_round() {
     };
     // Lights up to half as large as they are far, and larger; of the glossy lobe the fit's error is in it
     for (surface, far, bound) in [
-        (lambert_surface(), true, 0.1),
-        (lambert_surface(), false, 0.15),
+        (lambert_surface(), true, 0.07),
+        (lambert_surface(), false, 0.13),
         (glossy_surface(0.3), true, 0.35),
         (glossy_surface(0.3), false, 0.3),
     ] {

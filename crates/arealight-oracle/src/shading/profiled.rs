@@ -3,7 +3,7 @@
 use crate::polygon::{clip_by, transformed_form_factor, vector_form_factor};
 use arealight::Profile;
 use glam::{DMat3, DVec2, DVec3};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Corners of the polygon that stands for a level's disk, of its area: what they differ in is 1e-4 of what it
 /// sends.
@@ -30,6 +30,9 @@ pub(super) fn profiled(
         return 0.0;
     }
     let (back, determinant) = (inverse.inverse(), inverse.determinant().abs());
+    let toward = (vertices.iter().sum::<DVec3>() / vertices.len() as f64 - foot).normalize_or_zero();
+    let apart = |vertex: &DVec3| 1.0 - (vertex - foot).normalize_or_zero().dot(toward);
+    let wide = vertices.iter().map(apart).fold(0.0, f64::max);
     // A ring's mean of the profile, about the mean direction of what the lobe sees of it
     let mean = |from: DVec3, to: DVec3, vector: DVec3| {
         let axis = vector.normalize_or_zero();
@@ -57,10 +60,9 @@ pub(super) fn profiled(
             low = if ends[0] > first { at(ends[0]) } else { from };
             high = if ends[1] < last { at(ends[1]) } else { to };
             let sine = 2.0 * middle / (1.0 + middle * middle);
-            let across = 2.0 * (last - first) / (1.0 + first * last);
-            let part = vector.length() * shrunk / (sine * sine).max(1e-30);
-            let along = PI * part * sine / across.max(1e-30);
-            let gathered = (-0.25 * part - along * along / 24.0).exp() * (apart / middle.max(1e-30)).min(1.0);
+            let (widest, seen) = (0.2 * wide, 0.25 * shrunk / (sine * sine).max(1e-30));
+            let near = (apart / middle.max(1e-30)).min(1.0);
+            let gathered = (-widest * seen / (widest + seen)).exp() * near;
             let turn = turn_of(normal, azimuth, direction);
             about = profile.azimuth_part(cosine_of(0.5 * (ends[0] + ends[1])), turn, gathered);
         }

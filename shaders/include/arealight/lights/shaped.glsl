@@ -33,6 +33,7 @@ struct ArealightLocalShaped {
     uint profile;    // the first row
     float scale;
     float piece_scale;
+    float wide;      // a fifth of 1 less the cosine of how far around its corners are from its center
     uint azimuth;    // the row of azimuth 0; 0 where the profile is round
     uint levels;     // rows of levels
     uint levels_end;
@@ -65,6 +66,8 @@ bool arealight_find_range(inout ArealightLocalShaped local, float height) {
     ArealightOpeningWalk walk = arealight_opening_walk();
     local.nearest = 3e38;
     local.farthest = 0.0;
+    local.wide = 0.0;
+    vec3 toward = arealight_normalize_or(local.polygon.center - local.foot, vec3(0.0));
     local.holds_foot = true;
     bool begun = !is_clipped;
     vec3 before = arealight_from_foot(local, local.polygon.end - 1u);
@@ -83,6 +86,9 @@ bool arealight_find_range(inout ArealightLocalShaped local, float height) {
         for (int index = 0; index < vertices; index++) {
             vec3 b = arealight_opening_vertex(local.opening, seen, index);
             b = is_clipped ? b * (height / dot(local.normal, b)) - local.foot : b;
+            if (AREALIGHT_HAS_AZIMUTHS) {
+                local.wide = max(local.wide, 0.2 - 0.2 * dot(arealight_normalize_or(b, vec3(0.0)), toward));
+            }
             if (begun) {
                 arealight_range_edge(local, a, b);
             } else {
@@ -259,16 +265,6 @@ float arealight_half_tangent(float x, float scale) {
     return sqrt(square) / (1.0 + sqrt(1.0 - square));
 }
 
-// How much what is seen of a ring is at one azimuth, 1, or all around, 0: as if it were a disk of the solid
-// angle pi `seen`, or that long within the ring's width. By tangents of half angles.
-float arealight_gathered(float seen, float middle, float first, float last) {
-    float sine = 2.0 * middle / (1.0 + middle * middle);
-    float across = 2.0 * (last - first) / (1.0 + first * last);
-    float part = seen / max(sine * sine, 1e-18);
-    float along = AREALIGHT_PI * part * sine / max(across, 1e-18);
-    return exp(-0.25 * min(part, 80.0) - min(along * along, 400.0) / 24.0);
-}
-
 // A profile's mean over a ring between two places, `vector` being the ring's vector form factor in the lobe's
 // space: over the angles about the mean direction of what the lobe sees of the ring, as far as the lobe is
 // wide there. In all of the ring, where the lobe is wider than it.
@@ -300,8 +296,12 @@ float arealight_profile_mean(ArealightLocalShaped local, ArealightRingLobe lobe,
     bool is_known = square > 0.0 && square < 3e38;
     float about = 1.0;
     if (AREALIGHT_HAS_AZIMUTHS && is_known && local.azimuth > 0u) {
+        // How far around the light is, or what the lobe sees of it, the less of both; and of what is seen all
+        // around the mean is nearer to the axis
+        float sine = 2.0 * middle / (1.0 + middle * middle);
+        float seen = 0.25 * shrunk / max(sine * sine, 1e-18);
         float gathered = min(apart / max(middle, 1e-18), 1.0)
-            * arealight_gathered(form_factor * shrunk, middle, first, last);
+            * exp(-local.wide * seen / max(local.wide + seen, 1e-18));
         about = arealight_profile_azimuth(local.azimuth, local.polygon.to_frame, local.normal, -side,
                                           arealight_profile_part(0.5 * (ends.x + ends.y), local.piece_scale),
                                           gathered);

@@ -42,13 +42,14 @@ pub enum Position {
 }
 
 /// Effects that mean nothing without another.
-const NEEDS: [(Effects, Effects); 6] = [
+const NEEDS: [(Effects, Effects); 7] = [
     (Effects::MESH, Effects::POLYGON),
     (Effects::TEXTURED_ELLIPSE, Effects::ELLIPSE),
     (Effects::COAT_NORMAL, Effects::COAT),
     (Effects::COAT_BY_ALBEDO, Effects::COAT),
     (Effects::COUPLED, Effects::DIFFUSE),
     (Effects::COUPLED_BY_ALBEDO, Effects::COUPLED),
+    (Effects::AZIMUTH, Effects::PROFILE),
 ];
 
 /// The effect of a name.
@@ -106,6 +107,9 @@ fn check(effects: Effects) -> Result<(), Failure> {
     let fault = |message: String| Failure::Argument { argument: "--effects", message };
     if !effects.intersects(Effects::DIFFUSE | Effects::GLOSSY) {
         return Err(fault("without diffuse and glossy every surface is black; name one of them".into()));
+    }
+    if effects.contains(Effects::LINKED) {
+        return Err(fault("linked reads a stencil, which this kernel has not: leave it out".into()));
     }
     match NEEDS.iter().find(|(effect, needed)| effects.contains(*effect) && !effects.contains(*needed)) {
         Some((effect, needed)) => Err(fault(format!("{effect} needs {needed}; name it, too"))),
@@ -178,6 +182,8 @@ mod tests {
             }
         }
         assert!(effects_of(SETS[8].0).is_all(), "the last set is every effect");
+        let linked = check(effects_of("diffuse,linked")).unwrap_err().to_string();
+        assert!(linked.contains("which this kernel has not") && check(effects_of("diffuse")).is_ok());
     }
 
     #[test]
