@@ -2,6 +2,7 @@
 #define AREALIGHT_PROFILE_GLSL
 
 #include "arealight/form_factor/arc.glsl"
+#include "arealight/options.glsl"
 
 // A profile: a factor of a light's radiance, in [0, 1], by the angle from its front. Angles are measured by
 // x = sine^2 * scale: 0 on the axis, 1 where the profile ends.
