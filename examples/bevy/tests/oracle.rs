@@ -270,8 +270,6 @@ fn images_stand_upright_seen_from_the_front_and_may_be_changed() {
     let parts = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [0, 0, 0, 255]];
     let places = [[0.6, -0.6], [-0.6, -0.6], [0.6, 0.6], [-0.6, 0.6]].map(|[x, z]| DVec3::new(x, 0.0, z));
     let shown = app.world_mut().resource_mut::<Assets<Image>>().add(image(2, 2, parts.concat()));
-    let lamp = AreaLight::rectangle(0.5, 0.3);
-    let doors = Opening::doors(&lamp.shape, 0.3, 0.4).unwrap();
     let down = Transform::from_xyz(0.0, 0.4, 0.0).looking_at(Vec3::ZERO, Vec3::NEG_Z);
     let seen = Seen::whole();
     let pixel_at = |place: DVec3| {
