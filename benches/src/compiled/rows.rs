@@ -183,6 +183,7 @@ fn other_rows() -> Vec<Row> {
     // A profile or an opening is what any flat light may have: those that have none don't pay for it
     let every_kind =
         (Effects::all() - Effects::SURFACES - Effects::SHAPED - Effects::AZIMUTH) | Effects::SPECULAR_INPUT;
+    let uneven = Effects::PROFILE | Effects::AZIMUTH;
     let (disk, textured_disk) = (Effects::ELLIPSE, Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
     vec![
         // Other kinds of light in place of quads
@@ -198,12 +199,7 @@ fn other_rows() -> Vec<Row> {
         others("spheres", "exact", Effects::SPHERE, exact),
         others("tubes", "exact", Effects::TUBE, exact),
         others("lights with profiles", "exact", Effects::PROFILE, exact),
-        others(
-            "lights with profiles that are not round",
-            "exact",
-            Effects::PROFILE | Effects::AZIMUTH,
-            exact,
-        ),
+        others("lights with profiles that are not round", "exact", uneven, exact),
         others("lights behind openings", "exact", Effects::OPENING, exact),
         others("lights with profiles behind openings", "exact", Effects::SHAPED, exact),
         // Several kinds

@@ -143,9 +143,9 @@ fn uncoated_truth(
         };
         bounds.iter().fold(region, |region, normal| region.clipped(frame.to_surface(*normal)))
     });
+    let azimuth = frame.to_surface(light.azimuth);
     let shown = |direction| {
         let color = image.as_ref().map_or(DVec3::ONE, |image| image.color(direction));
-        let azimuth = frame.to_surface(light.azimuth);
         let factor = light.profile.as_ref().map(|it| profiled::factor_in(it, azimuth, &vertices, direction));
         color * factor.unwrap_or(1.0)
     };

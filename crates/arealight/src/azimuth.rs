@@ -32,23 +32,29 @@ impl Azimuths {
         Some(made)
     }
 
-    /// The factors about the axis at an angle between the first and the last, degrees.
-    fn row(&self, degrees: f64) -> Vec<f64> {
+    /// The factors about the axis of the angles before and after one, degrees, and how far it is between.
+    fn around(&self, degrees: f64) -> ([&[f64]; 2], f64) {
         let count = self.factors.len() / self.angles.len();
         let next = self.angles.partition_point(|angle| *angle < degrees).min(self.angles.len() - 1);
         let before = next.saturating_sub(1);
         let width = self.angles[next] - self.angles[before];
         let part = if width > 0.0 { ((degrees - self.angles[before]) / width).clamp(0.0, 1.0) } else { 1.0 };
-        let [low, high] = [before, next].map(|row| &self.factors[row * count..][..count]);
+        ([before, next].map(|row| &self.factors[row * count..][..count]), part)
+    }
+
+    /// The factors about the axis at an angle between the first and the last, degrees.
+    fn row(&self, degrees: f64) -> Vec<f64> {
+        let ([low, high], part) = self.around(degrees);
         low.iter().zip(high).map(|(low, high)| low + (high - low) * part).collect()
     }
 
     /// The factor in a direction: degrees, and radians about the axis.
     pub fn factor(&self, degrees: f64, azimuth: f64) -> f64 {
-        let row = self.row(degrees);
-        let place = (azimuth / TAU).rem_euclid(1.0) * row.len() as f64;
-        let [from, to] = [place as usize % row.len(), (place as usize + 1) % row.len()];
-        row[from] + (row[to] - row[from]) * place.fract()
+        let ([low, high], part) = self.around(degrees);
+        let place = (azimuth / TAU).rem_euclid(1.0) * low.len() as f64;
+        let columns = [place as usize % low.len(), (place as usize + 1) % low.len()];
+        let [from, to] = columns.map(|column| low[column] + (high[column] - low[column]) * part);
+        from + (to - from) * place.fract()
     }
 
     /// The greatest factor.

@@ -136,8 +136,8 @@ const ROWS: [Row; Plane::COUNT] = [
         Plane::Stencil,
         "g_stencil",
         (Texels::Integers, Effects::LINKED),
-        "stencil in r, of which eight bits are compared, or are the surface's groups with Effects::LINKED \
-         (s8_uint, r8_uint); read only with that or ShadeOptions::stencil, else bind any image",
+        "stencil in r: eight bits, for the stencil test, or for light linking with Effects::LINKED (s8_uint, \
+         r8_uint); read only with that or ShadeOptions::stencil, else bind any image",
     ),
     row(
         Plane::Motion,

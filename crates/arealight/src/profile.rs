@@ -170,8 +170,7 @@ impl Profile {
     /// What the factor is about a direction, in parts of its mean about the normal, as the GPU has it: `turn`
     /// is the azimuth's cosine and sine, `gathered` 1 at that azimuth, less the more it is all around.
     pub fn azimuth_part(&self, cosine: f64, turn: DVec2, gathered: f64) -> f64 {
-        let place = ((1.0 - cosine) * self.piece_scale()).max(0.0).sqrt();
-        self.azimuths.as_ref().map_or(1.0, |azimuths| azimuths.part(place, turn, gathered))
+        self.azimuths.as_ref().map_or(1.0, |azimuths| azimuths.part(self.side(cosine), turn, gathered))
     }
 
     /// The harmonics of the azimuth, place by place; none where it is round.
@@ -252,11 +251,15 @@ impl Profile {
         places
     }
 
+    /// How far a cosine is among the pieces: 0 on the axis, 1 where the profile ends.
+    fn side(&self, cosine: f64) -> f64 {
+        ((1.0 - cosine) * self.piece_scale()).max(0.0).sqrt()
+    }
+
     /// The place of a cosine, from those of [`Profile::places`].
     pub fn place(&self, places: &[DVec3], cosine: f64) -> DVec3 {
         let x = (1.0 - cosine * cosine) * self.scale();
-        let side = ((1.0 - cosine) * self.piece_scale()).max(0.0).sqrt();
-        let piece = ((side * Self::PIECES as f64) as usize).min(Self::PIECES - 1);
+        let piece = ((self.side(cosine) * Self::PIECES as f64) as usize).min(Self::PIECES - 1);
         let [from, to] = [places[piece], places[piece + 1]];
         if x >= 1.0 {
             return DVec3::new(x, 0.0, to.z);

@@ -74,16 +74,13 @@ pub(crate) fn place(document: &Document, messages: &mut Messages) -> Result<Vec<
         }
         let extension = |name: &str| node.extensions.as_ref().and_then(|e| e.others.get(name)).cloned();
         let mut said = said(&node.extras);
-        let mut bits = |name: &str| {
-            let value = said.as_mut().and_then(|said| said.as_object_mut()?.remove(name));
-            let bits = value.as_ref().map(|value| value.as_u64().and_then(|bits| u8::try_from(bits).ok()));
-            if bits == Some(None) {
+        let [groups, links] = ["groups", "links"].map(|name| {
+            take_bits(said.as_mut(), name).unwrap_or_else(|| {
                 let text = format!("extras.arealight.{name} must be a whole number from 0 to 255: left out");
                 messages.warn(field(), text);
-            }
-            bits.flatten().unwrap_or_default()
-        };
-        let (groups, links) = (bits("groups"), bits("links"));
+                0
+            })
+        });
         let said = said.filter(|said| said.as_object().is_none_or(|object| !object.is_empty()));
         let once = PlacedNode {
             index,
@@ -204,6 +201,13 @@ pub(crate) fn fog(root: &json::Root, messages: &mut Messages) -> Option<SceneFog
 fn said(extras: &json::Extras) -> Option<Value> {
     let extras: Value = serde_json::from_str(extras.as_ref()?.get()).ok()?;
     extras.get("arealight").cloned()
+}
+
+/// Takes eight bits out of what a node says; 0 where it says nothing of them, none where they are no such
+/// number.
+fn take_bits(said: Option<&mut Value>, name: &str) -> Option<u8> {
+    let value = said.and_then(|said| said.as_object_mut()?.remove(name));
+    value.map_or(Some(0), |value| u8::try_from(value.as_u64()?).ok())
 }
 
 /// The nodes' cameras.

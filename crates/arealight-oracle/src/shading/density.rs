@@ -45,9 +45,9 @@ pub fn density_truth(
         Some(image) => image.region(&vertices, settings.max_evaluations / super::EVALUATIONS_PER_TEXEL),
     };
     let region = bounds.iter().fold(region, |region, normal| region.clipped(frame.to_surface(*normal)));
+    let azimuth = frame.to_surface(light.azimuth);
     let estimate = directions.cut(&region).integrate(settings, angles, |to| {
         let shown = image.as_ref().map_or(DVec3::ONE, |image| image.color(to));
-        let azimuth = frame.to_surface(light.azimuth);
         let factor = light.profile.as_ref().map_or(1.0, |profile| factor_in(profile, azimuth, &vertices, to));
         (shown * (factor * density(to))).to_array()
     });
