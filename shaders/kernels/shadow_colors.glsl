@@ -58,14 +58,15 @@ vec3 arriving_by_chance(ShadowColors colors, vec3 radiance, vec3 specular) {
 const float FEW_RAYS = 1e-3;
 
 // What arrives by means over pixels, per channel, from 0 to 1: exactly 0 where all rays are hidden, 1 where
-// none is. A lobe that no ray is of gets what both lobes get.
+// none is. A lobe that no ray is of gets what both lobes get. A history's means of what is hidden may be a
+// little more than those of all.
 vec3 arriving_by_means(ShadowColors colors, vec3 specular) {
     float hidden = arealight_luminance(colors[0] + colors[2]);
     hidden /= max(arealight_luminance(colors[1] + colors[3]), 1e-37);
     vec3 few = vec3(FEW_RAYS * hidden);
     vec3 hidden_diffuse = (colors[0] + few) / (colors[1] + FEW_RAYS);
     vec3 hidden_specular = (colors[2] + few) / (colors[3] + FEW_RAYS);
-    return 1.0 - (hidden_diffuse + (hidden_specular - hidden_diffuse) * specular);
+    return max(1.0 - (hidden_diffuse + (hidden_specular - hidden_diffuse) * specular), vec3(0.0));
 }
 
 #endif

@@ -191,7 +191,7 @@ fn hit_in_scene(engine: &TestEngine, scene: &Scene, rays: &[Ray]) -> Vec<f64> {
 fn masked_scene() -> Scene {
     let at = |z: f64| [DVec3::Z * z, DVec3::new(4.0, 0.0, z), DVec3::new(0.0, 4.0, z)];
     let mut scene = scene_of(&[at(1.0), at(2.0), at(3.0)], without_textures(lambert(0.5)));
-    let image = Image { name: "mask".into(), width: 2, height: 1, texels: vec![0x00ff_ffff, 0xffff_ffff] };
+    let image = Image { width: 2, height: 1, texels: vec![0x00ff_ffff, 0xffff_ffff], ..Image::default() };
     scene.images.push(image);
     scene.textures.push(Texture { image: 0, srgb: true, wrap_u: Wrap::Clamp, wrap_v: Wrap::Clamp });
     scene

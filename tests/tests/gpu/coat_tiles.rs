@@ -35,12 +35,8 @@ fn square(at: DVec3, along: DVec3, across: DVec3) -> Light {
 fn bent_sweep(bend: Vec3, weight: f32) -> Scene {
     let mut scene = scene("sweep.glb");
     let [x, y, z] = (bend.normalize_or(Vec3::Z) * 127.5 + 127.5).round().to_array().map(|c| c as u8);
-    scene.images.push(Image {
-        name: "bent".into(),
-        width: 1,
-        height: 1,
-        texels: vec![u32::from_le_bytes([x, y, z, 255])],
-    });
+    let texels = vec![u32::from_le_bytes([x, y, z, 255])];
+    scene.images.push(Image { width: 1, height: 1, texels, ..Image::default() });
     let image = scene.images.len() as u32 - 1;
     scene.textures.push(Texture { image, srgb: false, wrap_u: Wrap::Repeat, wrap_v: Wrap::Repeat });
     let texture = scene.textures.len() as u32 - 1;

@@ -26,7 +26,7 @@ fn scene(heights: &[f64], repeats: f32) -> Scene {
 fn textured(scene: &mut Scene, size: u32, alpha: impl Fn(u32, u32) -> bool) {
     let texel = |i: u32| if alpha(i % size, i / size) { 0xffff_ffff } else { 0x00ff_ffff };
     let texels = (0..size * size).map(texel).collect();
-    scene.images.push(Image { name: "mask".into(), width: size, height: size, texels });
+    scene.images.push(Image { width: size, height: size, texels, ..Image::default() });
     scene.textures.push(Texture { image: 0, srgb: true, wrap_u: Wrap::Repeat, wrap_v: Wrap::Repeat });
     scene.materials[1].base_color_texture = Some(0);
 }

@@ -23,7 +23,7 @@ fn floor(texels: [u32; 4], material: SceneMaterial, wide: bool) -> (Scene, Camer
         groups: 0,
     };
     let texture = Texture { image: 0, srgb: false, wrap_u: Wrap::Repeat, wrap_v: Wrap::Repeat };
-    let image = Picture { name: "tiles".into(), width: 2, height: 2, texels: texels.to_vec() };
+    let image = Picture { width: 2, height: 2, texels: texels.to_vec(), ..Picture::default() };
     let scene = Scene {
         triangles: [[0, 1, 2], [0, 2, 3]].map(triangle).to_vec(),
         materials: vec![material],

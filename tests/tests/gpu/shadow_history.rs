@@ -128,3 +128,30 @@ fn a_shadow_whose_blocker_is_gone_goes() {
     // A mean of a fixed sixteen frames would leave (15/16)^4 of it, .77
     assert!(ghost[0] < 0.5 && ghost[3] < 0.1, "{ghost:?}");
 }
+
+#[test]
+fn nothing_is_darker_than_black() {
+    let Some(engine) = TestEngine::new() else { return };
+    let size = [384, 288];
+    // Coloured lamps, in a view that moves: of a channel, means of what is hidden and of all are two
+    let scene = Scene::from_bytes(include_bytes!("../../../scenes/demo.glb"), "demo").unwrap();
+    let mut camera = scene.camera(None, 4.0 / 3.0).unwrap();
+    let buffers = SceneBuffers::new(&scene, camera.position).unwrap();
+    let constants = buffers.constants(&camera, size, Vec3::ZERO);
+    let mut renderer = SceneRenderer::new(&engine, &buffers, &scene.lights, constants, size).unwrap();
+    let options = ShadeOptions { shadow_rays: 1, surfaces: scene.surfaces(), ..ShadeOptions::default() };
+    let of = (ShadowFilter::Gather, ShadowHistory::Camera);
+    let view = renderer.shadowed(&buffers, options, of).unwrap();
+    for frame in 0..4 {
+        camera.position.x += 0.0625;
+        renderer.look(buffers.constants(&camera, size, Vec3::ZERO));
+        renderer.visibility().unwrap();
+        let lamps = renderer.radiance().unwrap();
+        renderer.shade_shadowed(&view, frame).unwrap();
+        let shaded = renderer.radiance().unwrap();
+        // Adding to a lamp's radiance rounds
+        let least = shaded.iter().zip(lamps).map(|(shaded, lamp)| (*shaded - lamp).truncate().min_element());
+        let least = least.fold(0.0, f32::min);
+        assert!(least >= 0.0, "{least} in frame {frame}");
+    }
+}

@@ -14,7 +14,8 @@ pub struct LightArguments {
     /// without it they are left out, but those whose `extras.arealight.radius` says one
     #[arg(long, value_name = "RADIUS", value_parser = parse_radius)]
     light_size: Option<f64>,
-    /// Show the scene's animations at this time, in seconds; without it the scene is at rest
+    /// Show the scene's animations and moving images at this time, in seconds; without it the scene is at
+    /// rest
     #[arg(long, value_name = "SECONDS", value_parser = parse_time, allow_negative_numbers = true)]
     time: Option<f64>,
     /// What lights the scene: what the file has (`file`), or that and three softboxes around what the camera
@@ -31,9 +32,32 @@ enum Rig {
 }
 
 impl LightArguments {
+    /// The time that the scene is shown at first.
+    pub fn time(self) -> f64 {
+        self.time.unwrap_or(0.0)
+    }
+
+    /// The same so many seconds later.
+    #[must_use]
+    pub fn later(self, seconds: f64) -> Self {
+        Self { time: Some(self.time() + seconds), ..self }
+    }
+
     /// Reads a scene, or the demo's if there is none, says what of it is not shown, and finds the camera:
     /// that of a name, the file's first, or one that frames the scene.
     pub fn load(
+        self,
+        path: Option<&Path>,
+        camera: Option<&str>,
+        aspect: f64,
+    ) -> Result<(Scene, Camera), Failure> {
+        let found = self.load_silently(path, camera, aspect)?;
+        say_what_is_not_shown(&found.0, &scene_name(path));
+        Ok(found)
+    }
+
+    /// The same, and says nothing.
+    pub fn load_silently(
         self,
         path: Option<&Path>,
         camera: Option<&str>,
@@ -54,7 +78,6 @@ impl LightArguments {
                 message: format!("studio: {} is too large, or too far out: {fault}", path.display()),
             })?;
         }
-        say_what_is_not_shown(&scene, &path);
         Ok((scene, camera))
     }
 }

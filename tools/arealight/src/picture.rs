@@ -1,6 +1,7 @@
 //! From radiance to a file: supersampled radiance is resolved, and written as it is (EXR) or for a screen
 //! (PNG).
 
+use crate::canvas::Canvas;
 use crate::failure::Failure;
 use crate::output;
 use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage as _};
@@ -26,6 +27,8 @@ pub enum Format {
     Exr,
     /// PNG, 8 bits, sRGB.
     Png,
+    /// GIF, of films.
+    Gif,
 }
 
 /// How radiance becomes what a screen shows.
@@ -95,14 +98,20 @@ impl Picture {
     }
 
     /// Writes the picture, of `factor` × `factor` samples a pixel, in the format that the path's ending
-    /// names: `.exr` holds the mean radiance in float32, untouched by `stops`; `.png` is multiplied by
-    /// 2^stops, tone-mapped sample by sample (so that the edge of a bright light stays smooth), and encoded
-    /// as sRGB.
+    /// names: `.exr` holds the mean radiance in float32, untouched by `stops`; `.png` is what a screen shows.
     pub fn save(&self, path: &Path, factor: u32, stops: f32) -> Result<(), Failure> {
         match Self::check_format(path)? {
             Format::Exr => self.resolve(factor, |radiance| radiance).save_exr(path),
-            Format::Png => self.resolve(factor, |radiance| tone_map(radiance * stops.exp2())).save_png(path),
+            Format::Png | Format::Gif => self.shown(factor, stops).save_png(path),
         }
+    }
+
+    /// What a screen shows of it: multiplied by 2^stops, tone-mapped sample by sample (so that the edge of a
+    /// bright light stays smooth), and encoded as sRGB.
+    pub fn shown(&self, factor: u32, stops: f32) -> Canvas {
+        let mapped = self.resolve(factor, |radiance| tone_map(radiance * stops.exp2()));
+        let bytes = mapped.pixels.iter().flat_map(|p| p.to_array().map(srgb_from_linear)).collect();
+        Canvas::of_pixels(mapped.width, mapped.height, bytes)
     }
 
     /// The format that a path's ending names, PNG for standard output: ask before long work.
@@ -113,9 +122,13 @@ impl Picture {
         match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
             Some("exr") => Ok(Format::Exr),
             Some("png") => Ok(Format::Png),
+            Some("gif") => Ok(Format::Gif),
             _ => Err(Failure::Argument {
                 argument: "--output",
-                message: format!("{}: the file's name must end in .png or .exr", path.display()),
+                message: format!(
+                    "{}: the file's name must end in .png or .exr, a film's in .gif or these",
+                    path.display()
+                ),
             }),
         }
     }
@@ -132,16 +145,6 @@ impl Picture {
             .to_buffered(&mut bytes)
             .map_err(|error| Failure::output(path, error))?;
         output::write(path, bytes.get_ref())
-    }
-
-    fn save_png(&self, path: &Path) -> Result<(), Failure> {
-        let bytes = self.pixels.iter().flat_map(|p| p.to_array().map(srgb_from_linear)).collect();
-        let mut png = Cursor::new(Vec::new());
-        image::RgbImage::from_raw(self.width, self.height, bytes)
-            .expect("three bytes a pixel")
-            .write_to(&mut png, image::ImageFormat::Png)
-            .map_err(|error| Failure::output(path, error))?;
-        output::write(path, png.get_ref())
     }
 }
 

@@ -321,6 +321,15 @@ impl<'a> SceneRenderer<'a> {
         Ok(())
     }
 
+    /// Other texels of the scene's images, as many ([`SceneBuffers::show_frames`]).
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn set_texels(&mut self, texels: &[u32]) -> Result<(), EngineError> {
+        self.shown = false;
+        Ok(self.geometry[GEOMETRY.len() - 1].upload(texels)?)
+    }
+
     /// What the lights are.
     pub fn lights(&self) -> LightSummary {
         self.lights

@@ -17,16 +17,25 @@ impl Engine {
         let sources: Vec<LightTextureSource<'_>> =
             layers.filter_map(|layer| scene.light_texture_source(layer)).collect();
         let texels: Vec<Texels<'_>> = sources.iter().map(Texels::new).collect();
-        let images: Vec<SourceImage<'_>> = sources
-            .iter()
-            .zip(&texels)
-            .map(|(source, texels)| SourceImage {
-                texels: texels.borrow(),
-                size: [source.width, source.height],
-                part: source.part,
-            })
-            .collect();
+        let images: Vec<SourceImage<'_>> =
+            sources.iter().zip(&texels).map(|(source, texels)| texels.image(source)).collect();
         self.load_textures(size, &images)
+    }
+
+    /// Loads what the lights of a scene show again where it moves.
+    ///
+    /// # Errors
+    /// As [`Engine::update_texture`].
+    pub fn show_frames(&self, scene: &Scene) -> Result<(), EngineError> {
+        for (layer, shown) in (0..).zip(&scene.light_textures) {
+            let image = scene.textures[shown.texture as usize].image;
+            if let (false, Some(source)) =
+                (scene.images[image as usize].frames.is_empty(), scene.light_texture_source(layer as usize))
+            {
+                self.update_texture(layer, &Texels::new(&source).image(&source))?;
+            }
+        }
+        Ok(())
     }
 }
 
@@ -45,10 +54,11 @@ impl<'a> Texels<'a> {
         Self::Linear(bytes.iter().map(|texel| texel.map(|channel| f32::from(channel) / 255.0)).collect())
     }
 
-    fn borrow(&self) -> SourceTexels<'_> {
-        match self {
+    fn image(&self, source: &LightTextureSource<'_>) -> SourceImage<'_> {
+        let texels = match self {
             Self::Srgb(texels) => SourceTexels::Srgb(texels),
             Self::Linear(texels) => SourceTexels::Linear(texels),
-        }
+        };
+        SourceImage { texels, size: [source.width, source.height], part: source.part }
     }
 }

@@ -92,7 +92,7 @@ impl Engine {
     ///
     /// # Errors
     /// [`EngineError`] where there is no such layer, the image cannot be loaded, or memory is out.
-    pub fn update_texture(&mut self, layer: u32, image: &SourceImage<'_>) -> Result<(), EngineError> {
+    pub fn update_texture(&self, layer: u32, image: &SourceImage<'_>) -> Result<(), EngineError> {
         let (textures, _) = self.texture_level(layer, 0)?;
         textures.update(&[textures.source(layer, image)?])
     }

@@ -24,6 +24,8 @@ pub(crate) struct Document {
     folder: Option<PathBuf>,
     /// What the scene may take.
     pub budget: Budget,
+    /// When it is shown, in seconds.
+    pub time: f64,
 }
 
 impl Document {
@@ -51,7 +53,7 @@ impl Document {
             .map_err(|e| SceneError::NotGltf { file: file.clone(), reason: e.to_string() })?;
         let budget = Budget::new(memory);
         budget.read(bytes.len());
-        let mut document = Self { file, root, places, buffers: Vec::new(), folder, budget };
+        let mut document = Self { file, root, places, buffers: Vec::new(), folder, budget, time: 0.0 };
         document.check_version_and_extensions()?;
         document.check_fields()?;
         // Read the buffers

@@ -81,6 +81,11 @@ impl SceneBuffers {
         })
     }
 
+    /// The texels of a scene whose images show other frames.
+    pub fn show_frames(&mut self, scene: &Scene) {
+        (_, self.texels) = mips::pack(scene, mips::MOST_TEXELS);
+    }
+
     /// Push constants of the visibility kernel for `camera`, in an image of `size` pixels; `background` is
     /// the radiance where nothing is hit.
     pub fn constants(&self, camera: &Camera, size: [u32; 2], background: Vec3) -> VisibilityConstants {

@@ -2,6 +2,7 @@
 
 use crate::document::Document;
 use crate::error::SceneError;
+use crate::moving;
 use crate::scene::{Image, Texture, Wrap};
 use glam::{DVec2, DVec3};
 use gltf::json;
@@ -109,7 +110,7 @@ fn decode(document: &Document, index: usize, others: u64) -> Result<Image, Scene
     limits.max_image_width = Some(MAX_SIDE);
     limits.max_image_height = Some(MAX_SIDE);
     limits.max_alloc = Some(document.budget.left());
-    reader.limits(limits);
+    reader.limits(limits.clone());
     let decoder = reader.into_decoder().map_err(failed)?;
     // Refuse more than a scene may have by what the header says, before memory is taken
     let (width, height) = decoder.dimensions();
@@ -121,13 +122,17 @@ fn decode(document: &Document, index: usize, others: u64) -> Result<Image, Scene
     let size = 4 * (total - others);
     document.take(&field, 2 * size)?;
     let pixels = DynamicImage::from_decoder(decoder).map_err(failed)?.into_rgba8();
-    document.budget.give(size);
-    Ok(Image {
-        name: entry.name.clone().unwrap_or(field),
+    let mut image = Image {
+        name: entry.name.clone().unwrap_or_else(|| field.clone()),
         width: pixels.width(),
         height: pixels.height(),
         texels: pixels.pixels().map(|p| u32::from_le_bytes(p.0)).collect(),
-    })
+        frames: vec![],
+    };
+    image.frames = moving::frames(document, &field, (&bytes, format, limits), &image)?;
+    image.show(document.time);
+    document.budget.give(size);
+    Ok(image)
 }
 
 /// The mean of an sRGB image's linear colours.
@@ -181,7 +186,8 @@ pub(crate) fn halved_by(image: &Image, mean: impl Fn([u32; 4]) -> u32) -> Image 
         })
     };
     let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(near(x, y)));
-    Image { name: format!("{}, smaller", image.name), width, height, texels: texels.collect() }
+    let (name, texels) = (format!("{}, smaller", image.name), texels.collect());
+    Image { name, width, height, texels, frames: vec![] }
 }
 
 /// The linear colour of `image`, read by `texture`, at finite coordinates; bilinear, decoded before it is
@@ -234,7 +240,7 @@ mod tests {
     #[test]
     fn the_mean_is_of_linear_values() {
         let texels = vec![u32::from_le_bytes([255, 0, 0, 255]), u32::from_le_bytes([0, 188, 0, 255])];
-        let image = Image { name: String::new(), width: 2, height: 1, texels };
+        let image = Image { width: 2, height: 1, texels, ..Image::default() };
         let mean = linear_mean(&image);
         // sRGB 188 of 255 is 0.503 linear; as encoded values the mean of green would be 0.37
         assert!((mean - DVec3::new(0.5, 0.2514, 0.0)).length() < 1e-3, "{mean}");
@@ -245,7 +251,7 @@ mod tests {
         let texel = |v: u8, a: u8| u32::from_le_bytes([v, 0, 255, a]);
         // Two by two and a column more, which is left out
         let texels = vec![texel(255, 0), texel(0, 4), texel(9, 9), texel(0, 8), texel(255, 0), texel(9, 9)];
-        let image = Image { name: "a".into(), width: 3, height: 2, texels };
+        let image = Image { width: 3, height: 2, texels, ..Image::default() };
         let small = halved(&image, true);
         assert_eq!((small.width, small.height, &small.texels[..]), (1, 1, &[texel(188, 3)][..]));
         // The twin: of values that are not sRGB, and of what is one texel already
@@ -257,7 +263,7 @@ mod tests {
     fn samples_wrap_and_are_bilinear() {
         // Texels of 0, 0.2, 0.4, 0.6 side by side, not sRGB
         let texels = [0_u8, 51, 102, 153].map(|v| u32::from_le_bytes([v, 0, 0, 255])).to_vec();
-        let image = Image { name: String::new(), width: 4, height: 1, texels };
+        let image = Image { width: 4, height: 1, texels, ..Image::default() };
         let at = |wrap, u: f64| {
             let texture = Texture { image: 0, srgb: false, wrap_u: wrap, wrap_v: Wrap::Repeat };
             (sample(&image, texture, DVec2::new(u, 0.3)).x * 1e6).round() / 1e6

@@ -58,6 +58,7 @@ mod materials;
 mod meshes;
 mod messages;
 mod mips;
+mod moving;
 mod node_lights;
 mod nodes;
 mod numbers;

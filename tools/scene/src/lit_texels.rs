@@ -3,7 +3,8 @@
 use crate::scene::Image;
 use glam::DVec2;
 
-/// Counts texels that are not black, in any rectangle at once: sums over all texels above and to the left.
+/// Counts texels that are not black in any frame, in any rectangle at once: sums over all texels above and to
+/// the left.
 pub(crate) struct LitTexels {
     width: usize,
     height: usize,
@@ -16,7 +17,11 @@ impl LitTexels {
         let (width, height) = (image.width as usize, image.height as usize);
         let stride = width + 1;
         let mut sums = vec![0_u32; stride * (height + 1)];
-        for (y, row) in image.texels.chunks_exact(width).enumerate() {
+        let mut texels = image.texels.clone();
+        for (_, frame) in &image.frames {
+            texels.iter_mut().zip(frame).for_each(|(texel, shown)| *texel |= shown);
+        }
+        for (y, row) in texels.chunks_exact(width).enumerate() {
             let mut row_sum = 0;
             for (x, texel) in row.iter().enumerate() {
                 let [r, g, b, _] = texel.to_le_bytes();
@@ -50,7 +55,7 @@ mod tests {
     fn black_is_where_no_sample_is_lit() {
         // One texel of 8 x 4 is lit: (5, 2)
         let texels = (0..32).map(|i| u32::from_le_bytes([0, u8::from(i == 21), 0, 255])).collect();
-        let lit = LitTexels::new(&Image { name: String::new(), width: 8, height: 4, texels });
+        let lit = LitTexels::new(&Image { width: 8, height: 4, texels, ..Image::default() });
         let black = |x0: f64, y0: f64, x1: f64, y1: f64| {
             lit.is_black(DVec2::new(x0 / 8.0, y0 / 4.0), DVec2::new(x1 / 8.0, y1 / 4.0))
         };

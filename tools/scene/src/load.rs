@@ -19,7 +19,7 @@ pub struct LoadOptions {
     /// The radius of points and spots of `KHR_lights_punctual`, in metres, where the file says none. Without
     /// they are left out, with a warning.
     pub light_size: Option<f64>,
-    /// When the animations are shown, in seconds; without, nothing has moved yet.
+    /// When animations and images that move are shown, in seconds; without, nothing has moved yet.
     pub time: Option<f64>,
     /// The most memory that the scene may take, in bytes; else [`crate::memory_of`] what its files hold.
     pub memory: Option<u64>,
@@ -61,6 +61,7 @@ fn read(mut document: Document, name: String, options: LoadOptions) -> Result<Sc
     compressed_views::decompress(&mut document)?;
     draco::decompress(&mut document)?;
     let messages = &mut Messages::default();
+    document.time = options.time.unwrap_or(0.0);
     match options.time {
         Some(time) => animations::apply(&mut document, time, messages)?,
         None if document.root.animations.is_empty() => {}

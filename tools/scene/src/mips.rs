@@ -133,7 +133,7 @@ mod tests {
     use crate::scene::Wrap;
 
     fn image(width: u32, height: u32, texels: Vec<u32>) -> Image {
-        Image { name: "image".into(), width, height, texels }
+        Image { width, height, texels, ..Image::default() }
     }
 
     #[test]

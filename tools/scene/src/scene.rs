@@ -203,7 +203,7 @@ pub struct SceneLightTexture {
 }
 
 /// A decoded image.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Image {
     /// The file's name for it, or its index.
     pub name: String,
@@ -213,6 +213,8 @@ pub struct Image {
     pub height: u32,
     /// Red in the low byte, then green, blue, alpha; rows from the top.
     pub texels: Vec<u32>,
+    /// Of one that moves (APNG, WebP) until when each frame is shown, in seconds, and its texels; else empty.
+    pub frames: Vec<(f64, Vec<u32>)>,
 }
 
 impl Scene {

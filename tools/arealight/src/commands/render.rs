@@ -1,6 +1,7 @@
 //! `arealight render`: a picture of a glTF scene, lit by its polygon lights.
 
 mod bands;
+mod frames;
 mod rounds;
 mod shading;
 
@@ -8,12 +9,15 @@ use crate::failure::Failure;
 use crate::gpu;
 use crate::lights::{LightArguments, scene_name};
 use crate::output::{self, say_beside};
-use crate::picture::{Exposure, Picture};
+use crate::picture::Exposure;
+use crate::progress;
 use crate::quality::{QualityArguments, name_of};
 use crate::shadows::Shadows;
 use arealight::Effects;
 use arealight_engine::Fog;
 use arealight_scene::{Camera, Scene, SceneFog};
+use frames::{FilmArguments, Frame, Reel};
+use indicatif::ProgressBar;
 use serde_json::json;
 use shading::{Outcome, render};
 use std::collections::BTreeMap;
@@ -33,7 +37,7 @@ pub struct Arguments {
     #[command(flatten)]
     lights: LightArguments,
     /// The picture: .png (exposed and tone-mapped) or .exr (radiance); `-` writes PNG to standard output;
-    /// out/SCENE.png if absent
+    /// out/SCENE.png if absent. A film may be a .gif
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Size of the picture in pixels
@@ -73,9 +77,11 @@ pub struct Arguments {
     #[arg(long, value_name = "LEVELS", value_parser = parse_levels,
         conflicts_with_all = ["tiles", "reference"])]
     shadow_noise: Option<f64>,
-    /// Other random numbers, for the frames of a film
+    /// Other random numbers
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u32,
+    #[command(flatten)]
+    film: FilmArguments,
     #[command(flatten)]
     fog: FogArguments,
     #[command(flatten)]
@@ -142,6 +148,17 @@ impl Arguments {
     /// The reference samples that a pixel really has.
     fn reference_samples(&self) -> Option<u32> {
         self.reference.map(|samples| self.samples_a_subpixel(samples) * self.supersample * self.supersample)
+    }
+
+    /// The scene as a picture of the film shows it, and the camera; says what is not shown of the first one.
+    fn load(&self, index: u32) -> Result<(Scene, Camera), Failure> {
+        let aspect = f64::from(self.size[0]) / f64::from(self.size[1]);
+        let (path, camera) = (self.scene.as_deref(), self.camera.as_deref());
+        let lights = self.film.seconds(index).map_or(self.lights, |seconds| self.lights.later(seconds));
+        if index == 0 {
+            return lights.load(path, camera, aspect);
+        }
+        lights.load_silently(path, camera, aspect)
     }
 
     fn shadow_level(&self) -> Shadows {
@@ -226,7 +243,11 @@ impl Phases {
     fn time<T>(&mut self, name: &'static str, work: impl FnOnce() -> T) -> T {
         let began = Instant::now();
         let done = work();
-        self.0.push((name, began.elapsed().as_secs_f64()));
+        let seconds = began.elapsed().as_secs_f64();
+        match self.0.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, sum)) => *sum += seconds,
+            None => self.0.push((name, seconds)),
+        }
         done
     }
 
@@ -245,30 +266,52 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Read the scene
     let mut phases = Phases::default();
     let path = arguments.scene_name();
-    let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
-    let (scene, camera) = phases.time("load", || {
-        arguments.lights.load(arguments.scene.as_deref(), arguments.camera.as_deref(), aspect)
-    })?;
+    let (mut scene, mut camera) = phases.time("load", || arguments.load(0))?;
     let output = arguments.output(&scene);
-    Picture::check_format(&output)?;
+    let mut reel = Reel::new(&output, &arguments.film, arguments.size)?;
     if arguments.output.is_none() {
         std::fs::create_dir_all(FOLDER).map_err(|error| Failure::output(FOLDER, error))?;
     }
-    output::check(&output, arguments.scene.as_deref())?;
+    output::check(&reel.file(0), arguments.scene.as_deref())?;
     let samples = arguments.size.map(|side| side * arguments.supersample);
 
-    // Render, save, and say so
+    // Render, save, picture by picture
     let table = arguments.quality.table()?;
     let mut engine = phases.time("device", || gpu::engine(arguments.device.device.as_deref(), &table))?;
-    phases
-        .time("light textures", || engine.load_scene_textures(&scene, TEXTURE_SIZE))
-        .map_err(|error| gpu::failure(error, &path))?;
     let surfaces = arguments.surfaces.surfaces(&scene, &path);
     let quality = arguments.quality.within(arguments.quality.level_of(surfaces));
-    let outcome = phases
-        .time("picture", || render(&engine, &scene, &camera, samples, (surfaces, quality), arguments))
-        .map_err(|error| gpu::failure(error, &path))?;
-    phases.time("save", || outcome.picture.save(&output, arguments.supersample, outcome.stops))?;
+    let (origin, exposure) = (camera.position, arguments.exposure);
+    let mut frame = Frame { index: 0, origin, exposure, shadows: vec![] };
+    let mut before = None;
+    let bar = arguments.film.frames.map(|count| progress::bar(count.into(), "pictures"));
+    let mut shown = vec![];
+    let outcome = loop {
+        if scene.has_moving_images() || shown != scene.light_textures {
+            phases
+                .time("light textures", || engine.load_scene_textures(&scene, TEXTURE_SIZE))
+                .map_err(|error| gpu::failure(error, &path))?;
+            shown.clone_from(&scene.light_textures);
+        }
+        let of = (surfaces, quality);
+        let outcome = phases
+            .time("picture", || render(&engine, &scene, &camera, samples, of, (arguments, &mut frame)))
+            .map_err(|error| gpu::failure(error, &path))?;
+        let (factor, stops) = (arguments.supersample, outcome.stops);
+        phases.time("save", || reel.add(frame.index, &outcome.picture, (factor, stops)))?;
+        let outcome = outcome.after(before);
+        bar.iter().for_each(|bar| bar.inc(1));
+        frame.index += 1;
+        if frame.index == arguments.film.count() {
+            break outcome;
+        }
+        frame.exposure = Exposure::Stops(outcome.stops);
+        before = Some(outcome);
+        (scene, camera) = phases.time("load", || arguments.load(frame.index))?;
+    };
+    bar.iter().for_each(ProgressBar::finish_and_clear);
+
+    // Say so
+    let output = &reel.file(0);
     let device = engine.host().device_name();
     let summary = Summary {
         arguments,
@@ -279,9 +322,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         device,
         outcome: &outcome,
         phases: &phases,
-        output: &output,
+        output,
     };
-    say_beside(Some(&output), &if arguments.json { summary.to_json() } else { summary.to_text() })
+    say_beside(Some(output), &if arguments.json { summary.to_json() } else { summary.to_text() })
 }
 
 /// A part of a pixel.
@@ -365,8 +408,9 @@ impl Summary<'_> {
             });
         }
         let per_pixel = arguments.supersample * arguments.supersample;
+        let films = arguments.film.frames.map_or_else(String::new, |count| format!(", {count} in all"));
         lines.push(format!(
-            "picture  {} ({width}x{height}, {per_pixel} sample{} a pixel, exposure {} EV)\n",
+            "picture  {}{films} ({width}x{height}, {per_pixel} sample{} a pixel, exposure {} EV)\n",
             output.display(),
             if per_pixel == 1 { "" } else { "s" },
             stops_text(outcome.stops)
@@ -407,6 +451,7 @@ impl Summary<'_> {
             "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },
             "seconds": phases.to_json(),
             "picture": output,
+            "frames": arguments.film.frames,
             "size": arguments.size,
             "exposure": outcome.stops,
             "samples_per_pixel": arguments.supersample * arguments.supersample,

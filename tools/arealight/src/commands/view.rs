@@ -88,7 +88,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         .map_err(|error| gpu::failure(error, &path))?;
     let engines = Engines::new(engine, &scene).map_err(|error| gpu::failure(error, &path))?;
     let camera = camera.pinhole(scene.bounds.center());
-    let state = State::new(&scene, &camera, exposure, engines.has_yardstick());
+    let mut state = State::new(&scene, &camera, exposure, engines.has_yardstick());
+    state.time = arguments.lights.time();
     let viewer = Viewer::new(&engines, scene, arguments.size).map_err(|error| gpu::failure(error, &path))?;
     match (&arguments.record, script) {
         (Some(folder), Some(script)) => record(arguments, viewer, state, &script, folder, &path),
@@ -123,6 +124,7 @@ fn record(
         // What is at time 0 comes before the first frame
         let now = f64::from(index) * step;
         let before = if index == 0 { -1.0 } else { now - step };
+        state.play(viewer.scene(), if index == 0 { 0.0 } else { step });
         for event in script.between(before, now) {
             if !interface.takes(&event, arguments.size) {
                 state.apply(event, viewer.scene(), aspect);

@@ -46,7 +46,7 @@ pub fn panel(context: &Context, state: &mut State, shown: &Shown<'_>) {
         ScrollArea::vertical().max_height(height).show(ui, |ui| {
             ui.set_width(232.0);
             ui.spacing_mut().slider_width = 110.0;
-            picture(ui, state);
+            picture(ui, state, shown.scene.has_moving_images());
             ui.separator();
             ui.strong("Lamps");
             list(ui, state, shown);
@@ -77,7 +77,7 @@ pub fn panel(context: &Context, state: &mut State, shown: &Shown<'_>) {
 }
 
 /// The level, what is shown, and what the whole picture has.
-fn picture(ui: &mut Ui, state: &mut State) {
+fn picture(ui: &mut Ui, state: &mut State, moves: bool) {
     ui.horizontal_wrapped(|ui| {
         for level in Level::ALL {
             ui.selectable_value(&mut state.level, level, level.name());
@@ -102,6 +102,9 @@ fn picture(ui: &mut Ui, state: &mut State) {
         ui.checkbox(&mut state.shadows, "shadows");
         ui.checkbox(&mut state.costs, "costs");
         ui.checkbox(&mut state.is_foggy, "fog");
+        if moves {
+            ui.checkbox(&mut state.plays, "moves");
+        }
     });
     if state.is_foggy {
         let first = state.first_fog.density;

@@ -36,6 +36,8 @@ pub enum Key {
     Wipe,
     Error,
     Shadows,
+    /// Images that move go on, or stand still.
+    Play,
     Fog,
     /// Of fog, by a factor.
     Density(f64),
@@ -54,7 +56,7 @@ pub enum Key {
 }
 
 /// Keys as help and scripts name them, and what each does.
-pub const KEYS: [(&str, &str); 12] = [
+pub const KEYS: [(&str, &str); 13] = [
     ("1 to 5", "quality level"),
     ("w", "wipe: against the truth, against what engines ship, off"),
     ("e", "map of the error"),
@@ -63,6 +65,7 @@ pub const KEYS: [(&str, &str); 12] = [
     ("c", "what each level and effect costs here"),
     ("[ ]", "roughness of every surface: smoother, rougher"),
     ("- +", "exposure"),
+    ("space", "images that move stand still, or go on"),
     ("arrows", "turn the camera, as dragging does; the wheel goes nearer"),
     ("r", "everything as it was"),
     ("p", "save the picture"),
@@ -77,6 +80,7 @@ impl FromStr for Key {
             "w" => Self::Wipe,
             "e" => Self::Error,
             "s" => Self::Shadows,
+            "space" => Self::Play,
             "f" => Self::Fog,
             "," => Self::Density(0.8),
             "." => Self::Density(1.25),
@@ -144,6 +148,9 @@ pub struct State {
     pub exposure: f32,
     /// Added to the roughness of every surface.
     pub rougher: f32,
+    /// Of images that move, in seconds, and whether they do.
+    pub time: f64,
+    pub plays: bool,
     /// Whether lights have shadows.
     pub shadows: bool,
     /// Whether there is fog.
@@ -190,6 +197,8 @@ impl State {
             divider: 0.5,
             exposure,
             rougher: 0.0,
+            time: 0.0,
+            plays: true,
             shadows: true,
             is_foggy: scene.fog.is_some(),
             fog,
@@ -226,8 +235,15 @@ impl State {
 
     /// Whether both show the same of the scene, whatever is shown beside it.
     pub fn is_seen_as(&self, other: &Self) -> bool {
-        let same = |state: &Self| (state.orbit, state.rougher, state.fog(), state.shadows);
+        let same = |state: &Self| (state.orbit, state.rougher, state.time, state.fog(), state.shadows);
         same(self) == same(other) && self.lamps == other.lamps
+    }
+
+    /// Lets images that move go on by so many seconds.
+    pub fn play(&mut self, scene: &Scene, seconds: f64) {
+        if self.plays && scene.has_moving_images() {
+            self.time += seconds;
+        }
     }
 
     /// Whether the truth is shown, or what is far from it.
@@ -277,6 +293,7 @@ impl State {
                 self.mode = if self.mode == Mode::Error { Mode::Picture } else { Mode::Error };
             }
             Key::Shadows => self.shadows = !self.shadows,
+            Key::Play => self.plays = !self.plays,
             Key::Fog => self.is_foggy = !self.is_foggy,
             Key::Density(factor) => {
                 let first = self.first_fog.density;
@@ -379,6 +396,7 @@ mod tests {
         assert_eq!(keys(&["w", "e"]).mode, Mode::Error);
         assert_eq!(keys(&["+", "+", "-"]).exposure, 0.5);
         assert_eq!(keys(&["s"]).shadows, !keys(&[]).shadows);
+        assert_eq!((keys(&[]).plays, keys(&["space"]).plays), (true, false));
         assert!(keys(&["h", "p", "escape"]) != keys(&[]));
         let (clear, foggy) = (keys(&[]).fog(), keys(&["f"]).fog().unwrap());
         assert_eq!((clear, keys(&["f", "w", "w"]).fog(), keys(&["f", "f"]).fog()), (None, None, None));

@@ -6,7 +6,7 @@ use super::orbit::Orbit;
 use super::state::{Mode, Partner, State};
 use crate::means::{Distance, Means};
 use crate::shadows::Shadows;
-use arealight::plan::{MediumOptions, ShadeOptions};
+use arealight::plan::{MediumOptions, ShadeOptions, ShadowHistory};
 use arealight::{Effects, Level};
 use arealight_benches::ladder::{SHADE_YARDSTICK, yardstick_for};
 use arealight_benches::published;
@@ -53,6 +53,8 @@ struct Placed {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Seen {
     placed: Placed,
+    /// Of images that move.
+    frames: Vec<Option<usize>>,
     orbit: Orbit,
     shadows: bool,
     fog: Option<SceneFog>,
@@ -85,6 +87,8 @@ pub struct Viewer<'a> {
     /// As it is.
     scene: Scene,
     placed: Placed,
+    /// Of images that move.
+    frames: Vec<Option<usize>>,
     buffers: SceneBuffers,
     pub(super) renderer: SceneRenderer<'a>,
     yardstick: Option<SceneRenderer<'a>>,
@@ -152,6 +156,7 @@ impl<'a> Viewer<'a> {
         Ok(Self {
             engines,
             original: scene.clone(),
+            frames: vec![None; scene.images.len()],
             scene,
             placed,
             buffers,
@@ -181,6 +186,7 @@ impl<'a> Viewer<'a> {
     pub fn goes_on(&self, state: &State) -> bool {
         let truth_samples = self.truth.as_ref().map_or(0, |(_, truth)| truth.samples());
         self.measures(state)
+            || state.plays && self.scene.has_moving_images()
             || state.needs_truth() && truth_samples < MOST_SAMPLES
             || self.ours.as_ref().is_some_and(|drawn| !drawn.is_done())
     }
@@ -203,6 +209,7 @@ impl<'a> Viewer<'a> {
     /// Draws what the state asks for, and adds `samples` a pixel to the truth where that is a part of it.
     pub fn draw(&mut self, state: &State, samples: u32) -> Result<(), EngineError> {
         self.place(state)?;
+        self.show_frames(state.time)?;
         let seen = self.seen(state);
         self.look(state.orbit)?;
         self.draw_ours(&seen, state.level)?;
@@ -220,7 +227,7 @@ impl<'a> Viewer<'a> {
 
     fn seen(&self, state: &State) -> Seen {
         let (placed, shadows, fog) = (self.placed.clone(), state.has_shadows(), state.fog());
-        Seen { placed, orbit: state.orbit, shadows, fog }
+        Seen { placed, frames: self.frames.clone(), orbit: state.orbit, shadows, fog }
     }
 
     fn upload(&mut self) -> Result<(), EngineError> {
@@ -244,6 +251,21 @@ impl<'a> Viewer<'a> {
         }
         (self.scene, self.placed) = (scene, placed);
         self.upload()
+    }
+
+    /// Shows images that move as they are at a time.
+    fn show_frames(&mut self, time: f64) -> Result<(), EngineError> {
+        let frames = self.scene.frames_at(time);
+        if self.frames != frames {
+            self.frames = frames;
+            self.original.show_frames(time);
+            self.scene.show_frames(time);
+            self.engines.ours.show_frames(&self.scene)?;
+            self.buffers.show_frames(&self.scene);
+            self.renderer.set_texels(&self.buffers.texels)?;
+            self.looks = None;
+        }
+        Ok(())
     }
 
     /// Finds the surfaces that the camera sees, and what it sees of lamps.
@@ -334,7 +356,8 @@ impl<'a> Viewer<'a> {
             let (quality, surfaces) = (level.quality(), self.scene.surfaces());
             let options = ShadeOptions { quality, surfaces, shadow_rays, ..ShadeOptions::default() };
             let blockers = self.renderer.blockers(&self.buffers)?;
-            let views = self.renderer.shadowed_passes(&blockers, options, filter)?;
+            let of = (filter, ShadowHistory::Off);
+            let views = self.renderer.shadowed_passes(&blockers, options, of)?;
             self.shadowed = Some((level, views));
         }
         let views = self.shadowed.as_ref().map_or(&[][..], |(_, views)| views);

@@ -95,7 +95,7 @@ struct Desk<'a> {
     window: Option<(Rc<Window>, Pixels)>,
     /// Where the pointer is, in parts of the picture.
     pointer: [f64; 2],
-    /// When the last frame began, also in seconds of the script.
+    /// When the last frame began, and the one of the script in its seconds.
     last: Instant,
     before: f64,
     frames: u32,
@@ -143,11 +143,13 @@ impl Desk<'_> {
     fn draw(&mut self) -> Result<(), Failure> {
         // Minimised windows have no area
         let [Some(width), Some(height)] = self.size.map(NonZeroU32::new) else { return Ok(()) };
+        // Scripts and images that move wait for slow frames
+        let step = self.last.elapsed().as_secs_f64().min(MOST_STEP);
+        self.last = Instant::now();
+        self.state.play(self.viewer.scene(), step);
         if let Some(script) = self.script {
-            // The script waits for slow frames, so that what each event does is shown
-            let step = self.last.elapsed().as_secs_f64().min(MOST_STEP);
+            // What each event does is shown
             let now = (self.before.max(0.0) + step).min(script.next_after(self.before));
-            self.last = Instant::now();
             for event in script.between(self.before, now) {
                 self.apply(event);
             }
@@ -209,6 +211,7 @@ fn name_of(key: &WindowKey) -> Option<String> {
     Some(match key {
         WindowKey::Character(text) => text.to_lowercase(),
         WindowKey::Named(NamedKey::Escape) => "escape".to_owned(),
+        WindowKey::Named(NamedKey::Space) => "space".to_owned(),
         WindowKey::Named(NamedKey::ArrowLeft) => "left".to_owned(),
         WindowKey::Named(NamedKey::ArrowRight) => "right".to_owned(),
         WindowKey::Named(NamedKey::ArrowUp) => "up".to_owned(),

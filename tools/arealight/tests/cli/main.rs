@@ -7,6 +7,7 @@ mod compile_budget;
 mod compiled;
 mod eval;
 mod export;
+mod films;
 mod hostile;
 mod outputs;
 mod pictures;

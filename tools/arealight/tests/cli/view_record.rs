@@ -155,6 +155,16 @@ fn fog_is_the_scenes_until_it_is_thinner_or_off() {
 }
 
 #[test]
+fn images_move_until_they_are_stopped() {
+    let Some(()) = device() else { return };
+    let recording = record("cinema.glb", "0 key s\n0.5 key space\n0.75 key h\n0.75 key h\n");
+    assert_eq!(recording.frames.len(), 4);
+    // The screen, and what it lights
+    let [first, second, stopped] = [0, 1, 2].map(|frame| recording.difference(frame, frame + 1));
+    assert!(first > 0.2 && second > 0.2 && stopped == 0.0, "{first} {second} {stopped}");
+}
+
+#[test]
 fn wrong_scripts_and_places_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |arguments: &[&str], code: i32, words: &str| {

@@ -201,7 +201,24 @@ impl SceneRenderer<'_> {
         Ok(())
     }
 
-    /// [`SceneRenderer::shadowed`] of each pass over the options' surfaces, without a history.
+    /// Makes the shadows of another view those of this one, which is of the next frame: they go on.
+    ///
+    /// # Errors
+    /// As [`SceneRenderer::shadowed`].
+    pub fn take_over(
+        &self,
+        view: &mut ShadowedView,
+        blockers: &Rc<BlockerBuffers>,
+    ) -> Result<(), EngineError> {
+        view.blockers = Rc::clone(blockers);
+        view.masks = blockers.is_masked.then(|| self.masks()).transpose()?;
+        self.bind_shadowed(view)?;
+        let frame = self.shade_frame();
+        view.shade.prepare(&frame)?;
+        Ok(view.shadow.prepare(frame.lights)?)
+    }
+
+    /// [`SceneRenderer::shadowed`] of each pass over the options' surfaces.
     ///
     /// # Errors
     /// As [`SceneRenderer::shadowed`].
@@ -209,9 +226,8 @@ impl SceneRenderer<'_> {
         &self,
         blockers: &Rc<BlockerBuffers>,
         options: ShadeOptions,
-        filter: ShadowFilter,
+        of: (ShadowFilter, ShadowHistory),
     ) -> Result<Vec<ShadowedView>, EngineError> {
-        let of = (filter, ShadowHistory::Off);
         let view = |surfaces| self.shadowed_by(blockers, ShadeOptions { surfaces, ..options }, of);
         options.surfaces.passes().map(view).collect()
     }

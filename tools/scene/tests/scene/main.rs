@@ -12,6 +12,7 @@ mod hostile;
 mod ies_lights;
 mod lights;
 mod materials;
+mod moving_images;
 mod own_scenes;
 mod placed_meshes;
 mod punctual_lights;

@@ -3,7 +3,7 @@
 use super::Arguments;
 use super::shading::{View, ViewShadows, colors};
 use crate::means::Means;
-use arealight::plan::ShadeOptions;
+use arealight::plan::{ShadeOptions, ShadowHistory};
 use arealight_engine::{Cells, EngineError, SceneRenderer, ShadowedView};
 use glam::{DVec3, Vec3};
 use indicatif::ProgressBar;
@@ -157,8 +157,8 @@ impl<'a> Rounds<'a> {
         let mut part = renderer.cells(cells, &rectangles)?;
         let ViewShadows { blockers, options, filter, .. } = self.shadows;
         if passes.is_empty() {
-            *passes =
-                part.shadowed_passes(blockers, ShadeOptions { shadow_rays: RAYS, ..*options }, *filter)?;
+            let options = ShadeOptions { shadow_rays: RAYS, ..*options };
+            *passes = part.shadowed_passes(blockers, options, (*filter, ShadowHistory::Off))?;
         }
         for pass in passes.iter() {
             part.bind_shadowed(pass)?;

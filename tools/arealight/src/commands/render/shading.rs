@@ -2,11 +2,12 @@
 
 use super::Arguments;
 use super::bands::{Band, MOST_SAMPLES};
+use super::frames::Frame;
 use super::rounds::{MOST_ROUNDS, Rounds};
 use crate::picture::{AUTO_LUMINANCE, Exposure, MAX_STOPS, Picture};
 use crate::progress;
 use crate::shadows::Shadows;
-use arealight::plan::{MediumOptions, Output, ShadeOptions, ShadowFilter, TileOptions};
+use arealight::plan::{MediumOptions, Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
 use arealight::{Effects, Light, Quality, reach};
 use arealight_engine::{
     BlockerBuffers, Engine, EngineError, Fog, Reference, SceneRenderer, ShadowedView, TileCounts,
@@ -70,6 +71,19 @@ impl Outcome {
         };
     }
 
+    /// With the times of a picture before.
+    #[must_use]
+    pub fn after(self, before: Option<Self>) -> Self {
+        let Some(before) = before else { return self };
+        let sum = |all: Option<Duration>, one: Option<Duration>| all.zip(one).map(|(all, one)| all + one);
+        Self {
+            visibility: sum(before.visibility, self.visibility),
+            shading: sum(before.shading, self.shading),
+            fog: sum(before.fog, self.fog),
+            ..self
+        }
+    }
+
     /// The shadow rays that pixels of so many samples have had, at most and in the mean.
     pub fn rays(&self, samples: u32) -> Option<[f64; 2]> {
         (self.rays[0] > 0.0).then(|| self.rays.map(|rays| rays * f64::from(samples)))
@@ -95,13 +109,13 @@ pub fn render(
     camera: &Camera,
     size: [u32; 2],
     (surfaces, quality): (Effects, Quality),
-    arguments: &Arguments,
+    (arguments, frame): (&Arguments, &mut Frame),
 ) -> Result<Outcome, EngineError> {
-    // Everything on the GPU is relative to the camera
-    let buffers = SceneBuffers::new(scene, camera.position)?;
+    let buffers = SceneBuffers::new(scene, frame.origin)?;
     let whole = buffers.constants(camera, size, Vec3::ZERO);
     let bands = Band::of(size, MOST_SAMPLES);
     let bar = match arguments.reference {
+        _ if arguments.film.frames.is_some() => ProgressBar::hidden(),
         Some(samples) => {
             let samples = u64::from(arguments.samples_a_subpixel(samples));
             progress::bar(bands.len() as u64 * samples, "samples a subpixel")
@@ -112,6 +126,10 @@ pub fn render(
     let mut emission = vec![];
     let fog = arguments.fog.of(scene, camera);
     let most_stops = most_stops(scene);
+    // A film's shadows remember, but in bands, each of which would take memory
+    let remembers = arguments.film.frames.is_some() && arguments.shadow_noise.is_none() && bands.len() == 1;
+    let history = if remembers { ShadowHistory::Camera } else { ShadowHistory::Off };
+    let first_seed = arguments.seed.wrapping_add(frame.index);
     for (index, band) in bands.iter().enumerate() {
         let in_band = band.size(size[0]);
         let camera = band.camera(whole, size[1]);
@@ -120,21 +138,27 @@ pub fn render(
         // So far there is what lamps show of themselves
         let lamps = colors(&mut renderer)?;
         // Frames of a film, bands and rounds each have seeds of their own, one after the other
-        let seed =
-            arguments.seed.wrapping_mul(MOST_BANDS).wrapping_add(index as u32).wrapping_mul(MOST_ROUNDS);
+        let of_band = || first_seed.wrapping_mul(MOST_BANDS).wrapping_add(index as u32);
+        let seed = if remembers { first_seed } else { of_band().wrapping_mul(MOST_ROUNDS) };
         let shadows = match arguments.shadow_level() {
             Shadows::Rays(shadow_rays, filter) if arguments.reference.is_none() => {
                 let options = ShadeOptions { surfaces, quality, shadow_rays, ..ShadeOptions::default() };
                 let blockers = renderer.blockers(&buffers)?;
-                let passes = renderer.shadowed_passes(&blockers, options, filter)?;
+                let mut passes = std::mem::take(&mut frame.shadows);
+                for pass in &mut passes {
+                    renderer.take_over(pass, &blockers)?;
+                }
+                if passes.is_empty() {
+                    passes = renderer.shadowed_passes(&blockers, options, (filter, history))?;
+                }
                 Some(ViewShadows { blockers, options, filter, passes })
             }
             _ => None,
         };
-        let view = View { surfaces, quality, seed, light_count: scene.lights.len(), shadows };
+        let mut view = View { surfaces, quality, seed, light_count: scene.lights.len(), shadows };
         let (mut shading, tiles) = shade(&mut renderer, &view, arguments, &bar)?;
         let mut found = colors(&mut renderer)?;
-        let stops = || match arguments.exposure {
+        let stops = || match frame.exposure {
             Exposure::Stops(stops) => stops,
             Exposure::Auto => {
                 let [width, height] = in_band;
@@ -161,13 +185,16 @@ pub fn render(
             sum.fog = took.map(|took| sum.fog.unwrap_or_default() + took);
             found = colors(&mut renderer)?;
         }
-        if matches!(arguments.exposure, Exposure::Auto) {
+        if let Some(shadows) = view.shadows.take().filter(|_| remembers) {
+            frame.shadows = shadows.passes;
+        }
+        if matches!(frame.exposure, Exposure::Auto) {
             emission.extend(band.keep(size[0], lamps));
         }
         sum.add(visibility, shading, tiles, band.keep(size[0], found));
     }
     bar.finish_and_clear();
-    sum.stops = match arguments.exposure {
+    sum.stops = match frame.exposure {
         Exposure::Auto => sum.picture.auto_stops(&emission, most_stops),
         Exposure::Stops(stops) => stops,
     };
