@@ -2,8 +2,8 @@
 # Renders the five scenes beside their references, as docs/scenes.md shows them: tools/scene/compare.sh AREALIGHT FOLDER.
 # Writes SCENE.png and SCENE-reference.png, with shadows, and prints a row of the table for each scene: of radiance without shadows the ratio of
 # the means and the root of the mean squared difference over the mean, by the default level, and by half vectors. With `levels` after the folder,
-# and the names of scenes, instead rows of what a screen shows, in levels of 255 and blocks of 4 x 4: without and with shadows, each with the
-# part of colour.
+# and the names of scenes (else all), instead rows of what a screen shows, in levels of 255 and blocks of 4 x 4: without and with shadows, each
+# with the part of colour. Two references tell their noise, which is taken off.
 set -euo pipefail
 arealight=$1 folder=$2
 scenes=$(dirname "$0")/../../scenes
@@ -29,19 +29,23 @@ compare() {
 
 # SCENE SAMPLES: prints a row of the table of levels, as a screen shows both: without shadows, with them, and of those the part of colour
 levels() {
-  local view=(render "$scenes/$1.glb" --size 384x216) row="| \`$1.glb\` |" stops shadows
+  local view=(render "$scenes/$1.glb" --size 384x216) row="| \`$1.glb\` |" stops shadows seed
   stops=$("$arealight" "${view[@]}" -o "$folder/log.png" --exposure auto --json 2>/dev/null | sed -n 's/^ *"exposure": \([-+.0-9e]*\),*$/\1/p')
   for shadows in off filtered:1; do
     "$arealight" "${view[@]}" -o "$folder/ours.exr" --shadows $shadows >"$folder/log" 2>&1
-    "$arealight" "${view[@]}" -o "$folder/reference.exr" --shadows $shadows --reference "$2" >"$folder/log" 2>&1
-    row+=$("$arealight" compare "$folder/ours.exr" "$folder/reference.exr" --exposure "$stops" --json |
+    for seed in 1 2; do
+      "$arealight" "${view[@]}" -o "$folder/reference$seed.exr" --shadows $shadows --reference "$2" --seed $seed >"$folder/log" 2>&1
+    done
+    row+=$("$arealight" compare "$folder/ours.exr" "$folder/reference1.exr" "$folder/reference2.exr" --exposure "$stops" --json |
       sed -n 's/^ *"levels[_a-z]*": \([.0-9e]*\),*$/\1/p' | xargs printf " %.1f | %.1f |")
   done
   echo "$row"
 }
 
 if [[ ${3:-} == levels ]]; then
-  for scene in ${4:-demo room paper shapes screen clock coats materials sheen sweep studio interior product shop}; do levels "$scene" 64; done
+  all=("$scenes"/*.glb)
+  if [[ $# == 3 ]]; then set -- "$@" "${all[@]}"; fi
+  for scene in "${@:4}"; do levels "$(basename "$scene" .glb)" 16; done
   exit
 fi
 

@@ -52,13 +52,14 @@ impl Means {
     /// `factor` x `factor` of them a pixel; none before both halves are there.
     pub fn noise(&self, width: usize, factor: usize, stops: f32) -> Option<f64> {
         let [a, b] = self.samples.map(f64::from);
-        let half = |half: usize| {
+        let [first, second] = [0, 1].map(|half| {
             let scale = 1.0 / f64::from(self.samples[half]);
             self.sums[half].iter().map(move |sum| *sum * scale)
-        };
+        });
+        let halves = first.zip(second.map(|second| [second; 2]));
         // The variance of the mean, by the difference of two independent means
         let part = (a * b).sqrt() / (a + b);
-        (a * b > 0.0).then(|| part * levels(half(0).zip(half(1)), width, BLOCK * factor, stops)[0])
+        (a * b > 0.0).then(|| part * levels(halves, width, BLOCK * factor, stops)[0])
     }
 
     /// How far a picture is, over the pixels that count; none before both halves are there, or where the

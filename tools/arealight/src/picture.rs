@@ -181,9 +181,9 @@ pub const BLOCK: usize = 4;
 
 /// The root of the mean squared difference of what a screen shows of radiances at an exposure, in levels of
 /// 255: of the means of blocks of `block` x `block` in rows of `width`; and of that the part that is not
-/// alike in all channels.
+/// alike in all channels. Each is held against two truths, whose noise is taken off where it is not the same.
 pub fn levels(
-    pairs: impl Iterator<Item = (DVec3, DVec3)>,
+    judged: impl Iterator<Item = (DVec3, [DVec3; 2])>,
     width: usize,
     block: usize,
     stops: f32,
@@ -193,21 +193,23 @@ pub fn levels(
         DVec3::from_array(mapped.map(|channel| f64::from(srgb_from_linear(channel))))
     };
     let mut blocks = vec![];
-    for (index, (a, b)) in pairs.enumerate() {
+    for (index, (judged, truths)) in judged.enumerate() {
         let (x, y) = (index % width, index / width);
         let place = y / block * width.div_ceil(block) + x / block;
         if place >= blocks.len() {
-            blocks.resize(place + 1, (DVec3::ZERO, 0.0));
+            blocks.resize(place + 1, ([DVec3::ZERO; 2], 0.0));
         }
-        blocks[place].0 += shown(a) - shown(b);
-        blocks[place].1 += 1.0;
+        let judged = shown(judged);
+        let block = &mut blocks[place];
+        block.0.iter_mut().zip(truths).for_each(|(sum, truth)| *sum += judged - shown(truth));
+        block.1 += 1.0;
     }
-    let squares = blocks.iter().fold([0.0; 2], |[all, color], (sum, count)| {
-        let apart = *sum / *count;
-        let grey = DVec3::splat(apart.element_sum() / 3.0);
-        [all + apart.length_squared(), color + (apart - grey).length_squared()]
+    let squares = blocks.iter().fold([0.0; 2], |[all, color], (sums, count)| {
+        let [a, b] = sums.map(|sum| sum / *count);
+        let [of_color, and] = [a, b].map(|apart| apart - apart.element_sum() / 3.0);
+        [all + a.dot(b), color + of_color.dot(and)]
     });
-    squares.map(|square| (square / (3 * blocks.len()) as f64).sqrt())
+    squares.map(|square| (square.max(0.0) / (3 * blocks.len()) as f64).sqrt())
 }
 
 #[cfg(test)]
@@ -253,7 +255,7 @@ mod tests {
         let grey = DVec3::splat(0.1);
         let from_grey = |odd: DVec3, even: DVec3, stops| {
             let texels = (0..64).map(|i| if (i + i / 8) % 2 == 0 { even } else { odd });
-            levels(texels.map(|texel| (texel, grey)), 8, BLOCK, stops)
+            levels(texels.map(|texel| (texel, [grey; 2])), 8, BLOCK, stops)
         };
         // Noise that the blocks' means have not; twice as much in each channel; in one alone
         let [noise, color] = from_grey(grey * 1.05, grey * 0.95, 0.0);

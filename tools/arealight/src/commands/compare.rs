@@ -27,6 +27,10 @@ pub struct Arguments {
     /// What it is judged by (.exr)
     #[arg(value_name = "B.exr")]
     truth: PathBuf,
+    /// The same as B by other random numbers (`--seed`), of as many samples: with two of them their noise is
+    /// not taken for error
+    #[arg(value_name = "C.exr")]
+    other: Option<PathBuf>,
     /// Write a map of the difference as PNG: blue where A is darker than B, red where it is brighter
     #[arg(short, long, value_name = "FILE.png")]
     output: Option<PathBuf>,
@@ -60,17 +64,19 @@ struct Difference {
 }
 
 impl Difference {
-    /// Of pictures of one size.
-    fn new(judged: &Texture, truth: &Texture, stops: f32) -> Self {
-        let pairs = || judged.texels().iter().zip(truth.texels());
+    /// Of pictures of one size. What two truths differ by is noise, which is not in the mean of the product of
+    /// a picture's differences from them.
+    fn new(judged: &Texture, [truth, other]: [&Texture; 2], stops: f32) -> Self {
+        let truths = || truth.texels().iter().zip(other.texels()).map(|(b, c)| [*b, *c]);
+        let pairs = || judged.texels().iter().copied().zip(truths());
         let width = truth.width().max(1);
         let count = 3.0 * pairs().count() as f64;
         let mean = |sum: f64| sum / count;
-        let average = mean(truth.texels().iter().map(|texel| texel.element_sum()).sum());
-        let square = mean(pairs().map(|(a, b)| (*a - *b).length_squared()).sum());
+        let average = mean(truths().map(|[b, c]| 0.5 * (b + c).element_sum()).sum());
+        let square: f64 = mean(pairs().map(|(a, [b, c])| (a - b).dot(a - c)).sum()).max(0.0);
         let mut largest = (0.0, 0);
-        for (index, (a, b)) in pairs().enumerate() {
-            let apart = (*a - *b).abs().max_element();
+        for (index, (a, [b, c])) in pairs().enumerate() {
+            let apart = (a - 0.5 * (b + c)).abs().max_element();
             if apart > largest.0 {
                 largest = (apart, index);
             }
@@ -80,19 +86,20 @@ impl Difference {
             ratio: mean(judged.texels().iter().map(|texel| texel.element_sum()).sum()) / average,
             largest: (largest.0, [largest.1 % width, largest.1 / width]),
             mean: average,
-            levels: levels(pairs().map(|(a, b)| (*a, *b)), width, BLOCK, stops),
+            levels: levels(pairs(), width, BLOCK, stops),
         }
     }
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let Arguments { judged, truth, output, scale, exposure, tolerance, json } = arguments;
+    let Arguments { judged, truth, other, output, scale, exposure, tolerance, json } = arguments;
     if let Some(path) = output {
         if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
             let message = format!("{}: the file's name must end in .png", path.display());
             return Err(Failure::Argument { argument: "--output", message });
         }
-        output::check(path, [judged.as_path(), truth.as_path()])?;
+        let read = [judged, truth].into_iter().chain(other);
+        output::check(path, read.map(PathBuf::as_path))?;
     }
     if !(scale.is_finite() && *scale > 0.0) {
         return Err(Failure::Argument { argument: "--scale", message: format!("{scale} is not above 0") });
@@ -100,13 +107,16 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let mut images = Images::beside(Path::new(""), memory::most_of);
     let mut read = |path: &Path| images.read(path).map_err(|error| Failure::input(path, error));
     let (a, b) = (read(judged)?, read(truth)?);
-    let sizes = [&a, &b].map(|picture| [picture.width(), picture.height()]);
-    if sizes[0] != sizes[1] {
-        let [[x, y], [w, h]] = sizes;
-        let message = format!("has {x} x {y} pixels, and {} has {w} x {h}", truth.display());
-        return Err(Failure::input(judged, message));
+    let c = other.as_deref().map(&mut read).transpose()?;
+    let size = |picture: &Texture| [picture.width(), picture.height()];
+    for (path, picture) in [(judged, &a)].into_iter().chain(other.iter().zip(&c)) {
+        if size(picture) != size(&b) {
+            let ([x, y], [w, h]) = (size(picture), size(&b));
+            let message = format!("has {x} x {y} pixels, and {} has {w} x {h}", truth.display());
+            return Err(Failure::input(path, message));
+        }
     }
-    let found = Difference::new(&a, &b, *exposure);
+    let found = Difference::new(&a, [&b, c.as_ref().unwrap_or(&b)], *exposure);
     if found.mean.is_nan() || found.mean <= 0.0 {
         return Err(Failure::input(truth, "is black on average: an error has nothing to be relative to"));
     }
@@ -156,11 +166,30 @@ mod tests {
     fn errors_are_relative_to_the_second_picture() {
         let picture = |texels: [f64; 4]| Texture::new(2, 2, texels.map(DVec3::splat).to_vec()).unwrap();
         let truth = picture([1.0, 2.0, 3.0, 2.0]);
-        let same = Difference::new(&truth, &truth, 0.0);
+        let same = Difference::new(&truth, [&truth; 2], 0.0);
         assert_eq!((same.error, same.ratio, same.largest), (0.0, 1.0, (0.0, [0, 0])));
         assert_eq!(same.levels, [0.0; 2]);
-        let other = Difference::new(&picture([1.0, 2.0, 5.0, 2.0]), &truth, 0.0);
+        let other = Difference::new(&picture([1.0, 2.0, 5.0, 2.0]), [&truth; 2], 0.0);
         // One of four pixels is off by 2, over a mean of 2
         assert_eq!((other.error, other.ratio, other.largest), (0.5, 1.25, (2.0, [0, 1])));
+    }
+
+    #[test]
+    fn noise_of_two_truths_is_no_error() {
+        // One truth has too much, too little or as much in columns of blocks, the other in rows
+        let picture = |of: &dyn Fn([usize; 2]) -> f64| {
+            let grey = |i: usize| DVec3::splat(0.3 + 0.05 * of([i / 4 % 9, i / 144]));
+            Texture::new(36, 36, (0..36 * 36).map(grey).collect()).unwrap()
+        };
+        let truths = [0, 1].map(|axis| picture(&|place| (place[axis] % 3) as f64 - 1.0));
+        let found = |off: f64, truths: [&Texture; 2]| Difference::new(&picture(&|_| off), truths, 0.0);
+        let two = [&truths[0], &truths[1]];
+        let (right, wrong) = (found(0.0, two), found(1.0, two));
+        // A screen's curve is bent: of too much and too little a part of a level is left
+        assert!(right.error < 1e-9 && right.levels[0] < 0.5, "{right:?}");
+        assert!((wrong.error / (0.05 / 0.3) - 1.0).abs() < 1e-9, "{wrong:?}");
+        // The twin: by one truth
+        let one = found(0.0, [&truths[0]; 2]);
+        assert!(one.error > 0.1 && one.levels[0] > 5.0, "{one:?}");
     }
 }

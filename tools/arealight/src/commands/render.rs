@@ -17,7 +17,6 @@ use arealight::Effects;
 use arealight_engine::Fog;
 use arealight_scene::{Camera, Scene, SceneFog};
 use frames::{FilmArguments, Frame, Reel};
-use indicatif::ProgressBar;
 use serde_json::json;
 use shading::{Outcome, render};
 use std::collections::BTreeMap;
@@ -299,7 +298,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         let (factor, stops) = (arguments.supersample, outcome.stops);
         phases.time("save", || reel.add(frame.index, &outcome.picture, (factor, stops)))?;
         let outcome = outcome.after(before);
-        bar.iter().for_each(|bar| bar.inc(1));
+        if let Some(bar) = &bar {
+            bar.inc(1);
+        }
         frame.index += 1;
         if frame.index == arguments.film.count() {
             break outcome;
@@ -308,7 +309,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         before = Some(outcome);
         (scene, camera) = phases.time("load", || arguments.load(frame.index))?;
     };
-    bar.iter().for_each(ProgressBar::finish_and_clear);
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
 
     // Say so
     let output = &reel.file(0);
