@@ -107,7 +107,8 @@ fn linked_lights_have_shadows_and_monte_carlo_has_them_too() {
         radiance.iter().map(|pixel| pixel.truncate() / rounds as f32).collect::<Vec<Vec3>>()
     };
     let truth = seen(1, &|renderer| {
-        let reference = Reference { samples: 1024, seed: 1, shadows: true, coupled: false };
+        let reference =
+            Reference { samples: 1024, seed: 1, shadows: true, coupled: false, ..Reference::default() };
         renderer.reference(reference, |_| {}).unwrap();
     });
     let found = seen(16, &|renderer| {

@@ -80,7 +80,8 @@ fn by_rays(
 }
 
 fn by_reference(engine: &TestEngine, buffers: &SceneBuffers) -> f64 {
-    let reference = Reference { samples: 128, seed: 3, shadows: true, coupled: false };
+    let reference =
+        Reference { samples: 128, seed: 3, shadows: true, coupled: false, ..Reference::default() };
     mean(engine, buffers, |renderer, _| _ = renderer.reference(reference, |_| {}).unwrap(), 1)
 }
 

@@ -32,7 +32,8 @@ fn picture(engine: &TestEngine, scale: f64, from_camera: bool, method: Method) -
     let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
     let mut renderer = SceneRenderer::new(engine, &buffers, &[light], constants, SIZE).unwrap();
     if let Method::Reference = method {
-        let reference = Reference { samples: 16, seed: 1, shadows: true, coupled: false };
+        let reference =
+            Reference { samples: 16, seed: 1, shadows: true, coupled: false, ..Reference::default() };
         renderer.reference(reference, |_| {}).unwrap();
     } else {
         let surfaces = Effects::DIFFUSE;

@@ -62,7 +62,10 @@ impl View {
         let renderer = SceneRenderer::new(engine, &self.buffers, lights, constants, SIZE);
         let mut renderer = renderer.expect("it fits");
         renderer
-            .reference(Reference { samples, seed: 5, shadows, coupled: false }, |_| {})
+            .reference(
+                Reference { samples, seed: 5, shadows, coupled: false, ..Reference::default() },
+                |_| {},
+            )
             .expect("it samples");
         let radiance = renderer.radiance().expect("a picture");
         let download =

@@ -401,7 +401,7 @@ fn assert_monte_carlo(lamp: &Light, [plain_bound, shadowed_bound]: [f64; 2], oth
         radiance.iter().map(|pixel| f64::from(pixel.x) / f64::from(rounds)).collect::<Vec<f64>>()
     };
     let [plain, shadowed] = [false, true].map(|shadows| {
-        let reference = Reference { samples: 4096, seed: 1, shadows, coupled: false };
+        let reference = Reference { samples: 4096, seed: 1, shadows, coupled: false, ..Reference::default() };
         seen(lamp, 1, &|renderer| {
             renderer.reference(reference, |_| {}).unwrap();
         })

@@ -38,12 +38,14 @@ pub struct Reference {
     /// Whether diffuse lobes get what the Fresnel term leaves, as in glTF; else the two are added, as without
     /// [`Effects::COUPLED`].
     pub coupled: bool,
+    /// And so by what the lobe above leaves of all light, not of each direction's; below coats, too.
+    pub by_albedo: bool,
 }
 
 impl Default for Reference {
     /// 256 samples, without shadows, materials as in glTF.
     fn default() -> Self {
-        Self { samples: 256, seed: 0, shadows: false, coupled: true }
+        Self { samples: 256, seed: 0, shadows: false, coupled: true, by_albedo: false }
     }
 }
 
@@ -225,8 +227,9 @@ impl<'a> SceneRenderer<'a> {
         progress: impl FnMut(u32),
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let Reference { samples, shadows, coupled, seed } = reference;
-        let specialization = [(SHADOWS, shadows.into()), (COUPLED, coupled.into()), self.has_alpha];
+        let Reference { samples, shadows, coupled, by_albedo, seed } = reference;
+        let coupled = if by_albedo { 2 } else { coupled.into() };
+        let specialization = [(SHADOWS, shadows.into()), (COUPLED, coupled), self.has_alpha];
         self.sampled(
             (&REFERENCE, &specialization),
             (samples, shadows),

@@ -37,8 +37,10 @@ const bool HAS_SPECULAR_INPUT = true;
 
 // 1: triangles of the scene block light.
 layout(constant_id = 100) const uint SHADOWS = 0u;
-// 1: the Lambert lobe gets what the Fresnel term leaves, as in glTF; else it is added.
+// 1: the Lambert lobe gets what the Fresnel term leaves, as in glTF; 2: what the lobe above leaves of all
+// light, and so below a coat; else it is added.
 layout(constant_id = 101) const uint COUPLED = 0u;
+const uint COUPLED_BY_ALBEDO = 2u;
 
 #include "arealight/ggx.glsl"
 #include "arealight/thin_film.glsl"
@@ -68,7 +70,8 @@ struct CoatLobe {
     mat3 to_coat;
     vec3 view;         // in its frame
     float alpha;
-    float share;       // of the light that it reflects
+    vec2 reflectances; // at normal and at grazing incidence, of all that it covers
+    float share;       // of the light that it takes from what is below
     float probability; // of drawing from it
 };
 
@@ -89,6 +92,7 @@ struct Lobes {
     vec3 view;
     vec3 diffuse_albedo;
     vec2 above_diffuse; // its reflectances above the Lambert lobe, at normal and at grazing incidence
+    float reflected; // what they reflect of light all around, with COUPLED_BY_ALBEDO
     vec3 f0;
     float f90;
     vec2 axis;  // of the GGX lobe, of length 1: what its first alpha is along
@@ -104,16 +108,48 @@ struct Lobes {
     float pane_probability; // and then of drawing from the second
 };
 
+// What facets reflect of light before it reaches a Lambert lobe below: by these reflectances, or, below a
+// film, by f0 and f90 of all that it covers.
+float above_lambert(vec2 reflectances, vec4 below_film, ArealightThinFilm film, vec3 view, vec3 half_vector) {
+    if (arealight_is_film(film)) {
+        vec3 fresnel = arealight_thin_film_reflectance(film, below_film.rgb, below_film.a,
+                                                       clamp(dot(view, half_vector), 0.0, 1.0));
+        return min(arealight_max_component(fresnel), 1.0);
+    }
+    return mix(reflectances.x, reflectances.y, arealight_schlick_weight(view, half_vector));
+}
+
+// What such facets reflect of light all around: by 16 x 16 visible normals, to 1e-3.
+float reflected(vec3 view, vec2 alpha, vec2 reflectances, vec4 below_film, ArealightThinFilm film) {
+    const int SIDE = 16;
+    float sum = 0.0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        vec3 light = arealight_ggx_sample(view, alpha, (vec2(i % SIDE, i / SIDE) + 0.5) / float(SIDE));
+        float density = arealight_ggx_density(view, light, alpha);
+        if (light.z > 0.0 && density > 0.0) {
+            vec3 half_vector = arealight_normalize_or(view + light, vec3(0.0, 0.0, 1.0));
+            sum += above_lambert(reflectances, below_film, film, view, half_vector)
+                * arealight_ggx_evaluate(view, light, alpha, vec3(1.0), 1.0).x / density;
+        }
+    }
+    return sum / float(SIDE * SIDE);
+}
+
 // `base`: about what the lobes below the coat reflect.
 CoatLobe load_coat_lobe(ArealightFrame frame, ArealightCoat coat, float base) {
     vec3 view = vec3(frame.sin_view, 0.0, frame.cos_view);
     ArealightFrame own = arealight_coat_frame(frame, coat, view);
     float alpha = max(coat.roughness * coat.roughness, AREALIGHT_MIN_ALPHA);
+    vec3 own_view = vec3(own.sin_view, 0.0, own.cos_view);
     float share = arealight_coat_share(coat, dot(own.normal, view));
+    vec2 reflectances = vec2(share);
+    if (COUPLED == COUPLED_BY_ALBEDO && coat.weight > 0.0) {
+        reflectances = coat.weight * vec2(AREALIGHT_COAT_F0, 1.0);
+        share = reflected(own_view, vec2(alpha), reflectances, vec4(0.0), ArealightThinFilm(0.0, 1.0, 0.0));
+    }
     float rest = (1.0 - share) * base;
     float probability = share > 0.0 ? clamp(share / (share + rest), 0.25, rest > 0.0 ? 0.75 : 1.0) : 0.0;
-    return CoatLobe(arealight_frame_matrix(own), vec3(own.sin_view, 0.0, own.cos_view), alpha, share,
-                    probability);
+    return CoatLobe(arealight_frame_matrix(own), own_view, alpha, reflectances, share, probability);
 }
 
 // Where shadow rays start from a surface: off the triangle's own plane, on the side that is seen and on the
@@ -203,10 +239,13 @@ Lobes load_lobes(ArealightSurface surface, vec3 ray_origins[2], vec4 through, ve
         ? clamp(let_through / (let_through + glossy + diffuse), 0.25, 0.75) : 0.0;
     float probability = glossy > 0.0 ? clamp(glossy / (glossy + diffuse), 0.25, diffuse > 0.0 ? 0.9 : 1.0)
         : 0.0;
-    return Lobes(surface.position, ray_origins, arealight_frame_matrix(frame),
-                 vec3(frame.sin_view, 0.0, frame.cos_view),
-                 surface.diffuse_albedo, vec2(surface.interface_f0, surface.interface_f90), surface.f0,
-                     surface.f90, axis, alpha,
+    vec3 view = vec3(frame.sin_view, 0.0, frame.cos_view);
+    vec2 above_diffuse = vec2(surface.interface_f0, surface.interface_f90);
+    vec3 along = vec3(dot(axis, view.xy), axis.x * view.y - axis.y * view.x, view.z);
+    float taken = COUPLED == COUPLED_BY_ALBEDO && diffuse + let_through > 0.0
+        ? min(reflected(along, alpha, above_diffuse, vec4(surface.f0, surface.f90), surface.film), 1.0) : 0.0;
+    return Lobes(surface.position, ray_origins, arealight_frame_matrix(frame), view,
+                 surface.diffuse_albedo, above_diffuse, taken, surface.f0, surface.f90, axis, alpha,
                  probability, load_coat_lobe(frame, surface.coat, glossy + diffuse),
                      load_sheen_lobe(frame, surface.sheen), surface.film,
                  through.rgb * (1.0 - through.a), through.rgb * through.a, dielectric,
@@ -222,16 +261,20 @@ vec3 from_axis(Lobes lobes, vec3 direction) {
     return vec3(lobes.axis * direction.x + vec2(-lobes.axis.y, lobes.axis.x) * direction.y, direction.z);
 }
 
+// The part of light from a direction that arrives below an interface that reflects `above` of it.
+float arrives_below(Lobes lobes, float above) {
+    return COUPLED == 0u ? 1.0 : 1.0 - (COUPLED == COUPLED_BY_ALBEDO ? lobes.reflected : above);
+}
+
 // f cos of light from behind, which the interface reflects as much of as of that from the mirror image of its
 // direction.
 vec3 evaluate_transmitted(Lobes lobes, vec3 light) {
     vec3 mirrored = vec3(light.xy, -light.z);
+    vec3 half_vector = arealight_normalize_or(lobes.view + mirrored, vec3(0.0, 0.0, 1.0));
     float above = mix(lobes.above_diffuse.x, lobes.above_diffuse.y,
-                      arealight_schlick_weight(lobes.view,
-                                               arealight_normalize_or(lobes.view + mirrored,
-                                                                      vec3(0.0, 0.0, 1.0))));
+                      arealight_schlick_weight(lobes.view, half_vector));
     vec3 diffused = lobes.transmitted * (AREALIGHT_INVERSE_PI * max(mirrored.z, 0.0)
-                                         * (COUPLED != 0u ? 1.0 - above : 1.0));
+                                         * arrives_below(lobes, above));
     vec3 lobe = arealight_ggx_evaluate(to_axis(lobes, lobes.view), to_axis(lobes, mirrored), lobes.alpha,
                                        1.0 - lobes.above_pane.rgb, 1.0 - lobes.above_pane.a);
     return diffused + lobes.pane * lobe;
@@ -246,19 +289,15 @@ vec3 evaluate(Lobes lobes, vec3 light) {
     vec3 half_vector = arealight_normalize_or(lobes.view + light, vec3(0.0, 0.0, 1.0));
     vec3 f0 = lobes.f0;
     float f90 = lobes.f90;
-    float above_diffuse = mix(lobes.above_diffuse.x, lobes.above_diffuse.y,
-                              arealight_schlick_weight(lobes.view, half_vector));
+    float above = above_lambert(lobes.above_diffuse, vec4(f0, f90), lobes.film, lobes.view, half_vector);
     vec3 fresnel = vec3(1.0);
     if (arealight_is_film(lobes.film)) {
         fresnel = arealight_thin_film_reflectance(lobes.film, f0, f90,
                                                   clamp(dot(lobes.view, half_vector), 0.0, 1.0));
-        above_diffuse = min(arealight_max_component(fresnel), 1.0);
         f0 = vec3(1.0);
         f90 = 1.0;
     }
-    if (COUPLED != 0u) {
-        diffuse *= 1.0 - above_diffuse;
-    }
+    diffuse *= arrives_below(lobes, above);
     vec3 glossy = fresnel * arealight_ggx_evaluate(to_axis(lobes, lobes.view), to_axis(lobes, light),
                                                    lobes.alpha, f0, f90);
     vec3 base = diffuse + glossy;
@@ -268,8 +307,9 @@ vec3 evaluate(Lobes lobes, vec3 light) {
             * sheen_evaluate(view, light, lobes.sheen.roughness);
     }
     CoatLobe coat = lobes.coat;
-    vec3 above = arealight_ggx_evaluate(coat.view, coat.to_coat * light, vec2(coat.alpha), vec3(1.0), 1.0);
-    return mix(base, above, coat.share);
+    return base * (1.0 - coat.share)
+        + arealight_ggx_evaluate(coat.view, coat.to_coat * light, vec2(coat.alpha), vec3(coat.reflectances.x),
+                                 coat.reflectances.y);
 }
 
 // Zero where no lobe reflects light from there: below an opaque surface, and below its coat.

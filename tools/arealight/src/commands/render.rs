@@ -61,6 +61,9 @@ pub struct Arguments {
     /// and `specular_input`, such as diffuse
     #[arg(long, value_name = "SET", default_value = "required")]
     surfaces: SurfaceChoice,
+    /// How layers of surfaces share light
+    #[arg(long, value_enum, value_name = "MODEL", default_value = "gltf")]
+    coupling: Coupling,
     /// Shade by tiles of 8 x 8 pixels, each by the lights that contribute to it; with FRACTION, less than 1,
     /// without the lights that together contribute less than this fraction of what the others do
     #[arg(long, value_name = "FRACTION", num_args = 0..=1, require_equals = true,
@@ -203,6 +206,24 @@ impl std::str::FromStr for SurfaceChoice {
     }
 }
 
+/// What lies below a layer gets what the layer leaves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Coupling {
+    /// Of each direction's light, by the Fresnel term, as glTF has it
+    Gltf,
+    /// Of all light, by the layer's albedo, as Blender's Cycles and OpenPBR have it: darker at grazing views
+    Albedo,
+}
+
+impl Coupling {
+    fn of(self, surfaces: Effects) -> Effects {
+        let layers =
+            [(Effects::COUPLED, Effects::COUPLED_BY_ALBEDO), (Effects::COAT, Effects::COAT_BY_ALBEDO)];
+        let there = layers.into_iter().filter(|(layer, _)| self == Self::Albedo && surfaces.contains(*layer));
+        there.fold(surfaces, |surfaces, (_, by_albedo)| surfaces | by_albedo)
+    }
+}
+
 /// The set of names with commas between them, as [`Effects`] is displayed; `none` is the empty one.
 fn effects_of(list: &str) -> Result<Effects, String> {
     if list.trim() == "none" {
@@ -277,7 +298,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Render, save, picture by picture
     let table = arguments.quality.table()?;
     let mut engine = phases.time("device", || gpu::engine(arguments.device.device.as_deref(), &table))?;
-    let surfaces = arguments.surfaces.surfaces(&scene, &path);
+    let surfaces = arguments.coupling.of(arguments.surfaces.surfaces(&scene, &path));
     let quality = arguments.quality.within(arguments.quality.level_of(surfaces));
     let (origin, exposure) = (camera.position, arguments.exposure);
     let mut frame = Frame { index: 0, origin, exposure, shadows: vec![] };

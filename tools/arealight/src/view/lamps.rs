@@ -1,6 +1,6 @@
 //! Lamps that are picked and moved: their lights, and the triangles that look like them.
 
-use arealight::{Light, LightShape};
+use arealight::{Light, LightShape, Profile};
 use arealight_scene::rays::intersect_vertices;
 use arealight_scene::{Camera, Scene};
 use glam::{DAffine3, DQuat, DVec3, Vec3};
@@ -57,12 +57,37 @@ pub struct Edit {
     pub stops: f32,
     /// What its radiance is multiplied with, linear.
     pub color: [f32; 3],
+    /// Degrees from its front, beyond which it does not shine; 90 is as it was.
+    pub beam: f64,
 }
+
+/// The widest beam.
+pub const WHOLE: f64 = 90.0;
+/// A beam begins to fade at this part of its angle.
+const INNER: f64 = 0.6;
+/// Levels of a beam's profile: 3 % of the mean off at most (docs/shaped-light.md).
+const LEVELS: u32 = 4;
 
 impl Edit {
     /// A lamp as it was.
-    pub const NONE: Self =
-        Self { is_on: true, offset: DVec3::ZERO, turn: [0.0; 2], size: 1.0, stops: 0.0, color: [1.0; 3] };
+    pub const NONE: Self = Self {
+        is_on: true,
+        offset: DVec3::ZERO,
+        turn: [0.0; 2],
+        size: 1.0,
+        stops: 0.0,
+        color: [1.0; 3],
+        beam: WHOLE,
+    };
+
+    /// A light of this beam; as it is where the light has no front that is one, as spheres, or is bent.
+    fn shaped(&self, light: Light) -> Light {
+        let beam = self.beam.to_radians();
+        let is_narrow = self.beam < WHOLE;
+        let profile = is_narrow.then(|| Profile::cone(INNER * beam, beam, LEVELS).ok()).flatten();
+        let shaped = Light { profile: profile.or_else(|| light.profile.clone()), ..light.clone() };
+        if shaped.validate().is_ok() { shaped } else { light }
+    }
 
     /// What the lamp's radiance is multiplied with.
     fn factor(&self) -> Vec3 {
@@ -92,7 +117,7 @@ pub fn edit(scene: &mut Scene, edits: &[Edit]) {
         let transform = lights.first().map_or(DAffine3::IDENTITY, |light| edit.transform(light));
         let factor = edit.factor();
         for light in lights {
-            *light = Light { radiance: light.radiance * factor, ..light.moved(&transform) };
+            *light = edit.shaped(Light { radiance: light.radiance * factor, ..light.moved(&transform) });
         }
         let mut bright: Option<(u32, u32)> = None;
         for triangle in scene.triangles.get_mut(lamp.triangles.clone()).into_iter().flatten() {
@@ -245,6 +270,24 @@ mod tests {
             edit(&mut same, &vec![Edit::NONE; before.lamps.len()]);
             assert_eq!((same.lights, same.triangles), (before.lights, before.triangles));
         }
+    }
+
+    #[test]
+    fn a_flat_lamp_has_a_beam() {
+        let mut scene = Scene::from_bytes(include_bytes!("../../../../scenes/shapes.glb"), "shapes").unwrap();
+        let before = scene.lights.clone();
+        let edits = vec![Edit { beam: 30.0, ..Edit::NONE }; scene.lamps.len()];
+        edit(&mut scene, &edits);
+        let shaped = scene.lights.iter().filter(|light| light.profile.is_some()).count();
+        // Not spheres and tubes, which shine all around
+        assert!(shaped > 0 && shaped < scene.lights.len());
+        for (was, is) in before.iter().zip(&scene.lights) {
+            assert!(is.validate().is_ok() && was.profile.is_none());
+            assert_eq!(Light { profile: None, ..is.clone() }, *was);
+        }
+        let mut whole = scene.clone();
+        edit(&mut whole, &vec![Edit { stops: 1.0, ..Edit::NONE }; scene.lamps.len()]);
+        assert_eq!(whole.lights.iter().filter(|light| light.profile.is_some()).count(), shaped);
     }
 
     #[test]

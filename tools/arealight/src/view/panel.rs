@@ -141,6 +141,8 @@ fn edit(ui: &mut Ui, state: &mut State, shown: &Shown<'_>, lamp: usize) {
         ui.color_edit_button_rgb(&mut edit.color);
     });
     ui.add(Slider::new(&mut edit.size, 0.1..=10.0).logarithmic(true).text("size"));
+    let beam = Slider::new(&mut edit.beam, 3.0..=super::lamps::WHOLE).suffix("°").text("beam");
+    ui.add(beam).on_hover_text("of flat lamps: beyond this angle from the front no light goes");
     for (degrees, (most, name)) in edit.turn.iter_mut().zip([(180.0, "turn"), (90.0, "tilt")]) {
         ui.add(Slider::new(degrees, -most..=most).suffix("°").text(name));
     }

@@ -7,7 +7,7 @@ use super::state::{Mode, Partner, State};
 use crate::means::{Distance, Means};
 use crate::shadows::Shadows;
 use arealight::plan::{MediumOptions, ShadeOptions, ShadowHistory};
-use arealight::{Effects, Level};
+use arealight::{Effects, Level, Light};
 use arealight_benches::ladder::{SHADE_YARDSTICK, yardstick_for};
 use arealight_benches::published;
 use arealight_engine::{Engine, EngineError, Fog, FogView, Reference, SceneRenderer, ShadowedView};
@@ -106,8 +106,9 @@ pub struct Viewer<'a> {
     theirs: Option<Drawn>,
     truth: Option<(Seen, Means)>,
     pub(super) tried: Option<(Seen, Vec<Tried>)>,
-    /// Levels that were shaded before, with shadows or without: their pipelines are compiled.
-    compiled: Vec<(Level, bool)>,
+    /// Levels that were shaded before, with shadows or without, for lights of these effects: their pipelines are
+    /// compiled.
+    compiled: Vec<(Level, bool, Effects)>,
 }
 
 /// What there is to show.
@@ -311,10 +312,11 @@ impl<'a> Viewer<'a> {
     fn draw_round(&mut self, of: (Seen, Level), mut means: Means) -> Result<Drawn, EngineError> {
         let seed = means.samples();
         let mut time = self.shade_once(&of, seed)?;
-        if !self.compiled.contains(&(of.1, of.0.shadows)) {
+        let pipelines = (of.1, of.0.shadows, self.renderer.lights().effects);
+        if !self.compiled.contains(&pipelines) {
             // The first time was the driver's compiler's
             time = self.shade_once(&of, seed)?;
-            self.compiled.push((of.1, of.0.shadows));
+            self.compiled.push(pipelines);
         }
         if let Some(fog) = self.fog(&of.0) {
             let [columns, rows] = self.size.map(|side| side.div_ceil(8));
@@ -396,7 +398,13 @@ impl<'a> Viewer<'a> {
         };
         if truth.samples() < MOST_SAMPLES {
             let coupled = self.scene.surfaces().contains(Effects::COUPLED);
-            let reference = Reference { samples, seed: truth.samples(), shadows: seen.shadows, coupled };
+            let reference = Reference {
+                samples,
+                seed: truth.samples(),
+                shadows: seen.shadows,
+                coupled,
+                by_albedo: false,
+            };
             self.begin()?;
             self.renderer.reference(reference, |_| {})?;
             if let Some(fog) = self.fog(seen) {
@@ -451,9 +459,11 @@ fn upload<'a>(engines: &'a Engines, scene: &Scene, size: [u32; 2]) -> Result<Upl
     let camera = scene.framing_camera(f64::from(size[0]) / f64::from(size[1]));
     let constants = buffers.constants(&camera, size, Vec3::ZERO);
     let renderer = SceneRenderer::new(&engines.ours, &buffers, &scene.lights, constants, size)?;
+    // A yardstick's lights have no beam
+    let bare: Vec<Light> =
+        scene.lights.iter().map(|light| Light { profile: None, ..light.clone() }).collect();
     let yardstick = engines.yardstick.as_ref();
-    let yardstick =
-        yardstick.map(|engine| SceneRenderer::new(engine, &buffers, &scene.lights, constants, size));
+    let yardstick = yardstick.map(|engine| SceneRenderer::new(engine, &buffers, &bare, constants, size));
     Ok((buffers, renderer, yardstick.transpose()?))
 }
 

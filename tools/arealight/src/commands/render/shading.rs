@@ -293,7 +293,8 @@ fn shade(
             let samples = arguments.samples_a_subpixel(samples);
             let shadows = arguments.casts_shadows();
             let coupled = surfaces.contains(Effects::COUPLED);
-            let reference = Reference { samples, shadows, coupled, seed };
+            let by_albedo = surfaces.contains(Effects::COUPLED_BY_ALBEDO);
+            let reference = Reference { samples, shadows, coupled, by_albedo, seed };
             let before = bar.position();
             return Ok((
                 renderer.reference(reference, |done| bar.set_position(before + u64::from(done)))?,
