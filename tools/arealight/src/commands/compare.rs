@@ -64,8 +64,8 @@ struct Difference {
 }
 
 impl Difference {
-    /// Of pictures of one size. What two truths differ by is noise, which is not in the mean of the product of
-    /// a picture's differences from them.
+    /// Of pictures of one size. What two truths differ by is noise, which is not in the mean of the product
+    /// of a picture's differences from them.
     fn new(judged: &Texture, [truth, other]: [&Texture; 2], stops: f32) -> Self {
         let truths = || truth.texels().iter().zip(other.texels()).map(|(b, c)| [*b, *c]);
         let pairs = || judged.texels().iter().copied().zip(truths());

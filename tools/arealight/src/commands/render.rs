@@ -97,7 +97,7 @@ pub struct Arguments {
 #[derive(clap::Args)]
 struct FogArguments {
     /// Fog in the place of the scene's: extinction per unit of length, 0 for none. Its froxels are 8 pixels
-    /// wide and high, in 64 slices
+    /// wide and high, fewer in pictures less than 768 wide, in 64 slices
     #[arg(long, value_name = "DENSITY", value_parser = parse_density)]
     fog: Option<f32>,
     /// Of fog, the mean cosine of the angle by which it turns light: above 0 forwards

@@ -119,7 +119,7 @@ fn picture(ui: &mut Ui, state: &mut State, moves: bool) {
 
 /// The lamps, each with its switch.
 fn list(ui: &mut Ui, state: &mut State, shown: &Shown<'_>) {
-    ScrollArea::vertical().id_salt("lamps").max_height(110.0).show(ui, |ui| {
+    ScrollArea::vertical().id_salt("lamps").max_height(104.0).show(ui, |ui| {
         for lamp in 0..state.lamps.len() {
             let row = ui.horizontal(|ui| {
                 ui.checkbox(&mut state.lamps[lamp].is_on, "");

@@ -106,8 +106,8 @@ pub struct Viewer<'a> {
     theirs: Option<Drawn>,
     truth: Option<(Seen, Means)>,
     pub(super) tried: Option<(Seen, Vec<Tried>)>,
-    /// Levels that were shaded before, with shadows or without, for lights of these effects: their pipelines are
-    /// compiled.
+    /// Levels that were shaded before, with shadows or without, for lights of these effects: their pipelines
+    /// are compiled.
     compiled: Vec<(Level, bool, Effects)>,
 }
 

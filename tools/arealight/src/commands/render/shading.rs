@@ -229,7 +229,9 @@ fn add_fog(
         let samples = arguments.samples_a_subpixel(samples);
         return renderer.fog_reference(fog, samples, (shadow_rays, seed), |_| ());
     }
-    let [columns, rows] = size.map(|side| side.div_ceil(8 * arguments.supersample));
+    // A beam is a few froxels wide in small pictures, too
+    let froxel = (arguments.size[0] / 96).clamp(2, 8) * arguments.supersample;
+    let [columns, rows] = size.map(|side| side.div_ceil(froxel));
     // doc: medium options
     let samples = arguments.fog.fog_samples;
     let options = MediumOptions { shadow_rays, samples, ..MediumOptions::default() };
