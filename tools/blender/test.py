@@ -141,7 +141,7 @@ def cycles(name):
 def arealight(scene, name, *options):
     path = FOLDER / f"{name}.exr"
     subprocess.run(
-        [AREALIGHT, "render", str(scene), "--size", "x".join(map(str, SIZE)), "--shadows", "off", "-o", str(path), *options],
+        [AREALIGHT, "render", str(scene), "--size", "x".join(map(str, SIZE)), "--shadows", "off"] + ["-o", str(path), *options],
         check=True,
         capture_output=True,
     )
@@ -175,7 +175,8 @@ def compare_layers(bound):
     for model in ("albedo", "gltf"):
         ours = arealight(scene, "varnish", "--coupling", model)
         apart[model] = float(ours[floor].mean() / theirs[floor].mean())
-    print("varnish: a floor at grazing views " + ", ".join(f"x{ratio:.3f} by --coupling {model}" for model, ratio in apart.items()))
+    said = ", ".join(f"x{ratio:.3f} by --coupling {model}" for model, ratio in apart.items())
+    print(f"varnish: a floor at grazing views {said}")
     # The twin: by the other model it is too bright
     assert abs(apart["albedo"] - 1.0) < bound < apart["gltf"] - 1.0
 

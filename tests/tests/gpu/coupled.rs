@@ -148,11 +148,10 @@ fn a_floor_by_albedo_is_its_reference_and_darker_than_gltfs() {
         let camera = Camera::framing("", bounds, DVec3::new(0.0, -0.12, -1.0), DVec3::Y, 4.0 / 3.0);
         let size = [64, 48];
         let buffers = SceneBuffers::new(&scene, DVec3::ZERO).unwrap();
-        let light = quad_light(DVec3::new(0.0, 2.0, -0.5));
+        let lights = [quad_light(DVec3::new(0.0, 2.0, -0.5))];
         let mean = |shade: &dyn Fn(&mut SceneRenderer<'_>)| -> f64 {
             let constants = buffers.constants(&camera, size, Vec3::ZERO);
-            let light = std::slice::from_ref(&light);
-            let mut renderer = SceneRenderer::new(&engine, &buffers, light, constants, size).unwrap();
+            let mut renderer = SceneRenderer::new(&engine, &buffers, &lights, constants, size).unwrap();
             renderer.visibility().unwrap();
             shade(&mut renderer);
             renderer.radiance().unwrap().iter().map(|texel| f64::from(texel.y)).sum()

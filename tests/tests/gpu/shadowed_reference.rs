@@ -61,12 +61,8 @@ impl View {
         let constants = self.buffers.constants(&self.camera, SIZE, Vec3::ZERO);
         let renderer = SceneRenderer::new(engine, &self.buffers, lights, constants, SIZE);
         let mut renderer = renderer.expect("it fits");
-        renderer
-            .reference(
-                Reference { samples, seed: 5, shadows, coupled: false, ..Reference::default() },
-                |_| {},
-            )
-            .expect("it samples");
+        let reference = Reference { samples, seed: 5, shadows, coupled: false, ..Reference::default() };
+        renderer.reference(reference, |_| {}).expect("it samples");
         let radiance = renderer.radiance().expect("a picture");
         let download =
             |image: &Image| -> Vec<[f32; 4]> { image.download(Usage::COMPUTE_READ).expect("a picture") };

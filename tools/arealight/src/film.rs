@@ -1,9 +1,12 @@
 //! Pictures as an animated GIF of one palette.
 
 use crate::canvas::Canvas;
+use crate::failure::Failure;
+use crate::output;
 use color_quant::NeuQuant;
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use std::borrow::Cow;
+use std::path::Path;
 
 /// How a film's colours become few.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,6 +31,13 @@ fn dithered(frame: &Canvas, dither: i32) -> Vec<u8> {
         [channel(rgb[0]), channel(rgb[1]), channel(rgb[2]), 255]
     });
     raised.collect()
+}
+
+/// Writes pictures of one size, so many a second, with the most colours that there are.
+pub fn save(path: &Path, frames: &[Canvas], rate: u32) -> Result<(), Failure> {
+    let delay = (100 / rate.max(1)).max(1) as u16;
+    let film = encode(frames, delay, Palette { colors: 255, dither: 6 });
+    output::write(path, &film.map_err(|error| Failure::output(path, error))?)
 }
 
 /// Pictures of one size, each shown for `delay` hundredths of a second, again and again. Pixels that stay as

@@ -2,7 +2,6 @@
 
 use crate::failure::Failure;
 use crate::memory;
-use crate::output::say_what_is_not_shown;
 use arealight_scene::{Camera, LoadOptions, Scene};
 use std::path::{Path, PathBuf};
 
@@ -43,21 +42,9 @@ impl LightArguments {
         Self { time: Some(self.time() + seconds), ..self }
     }
 
-    /// Reads a scene, or the demo's if there is none, says what of it is not shown, and finds the camera:
-    /// that of a name, the file's first, or one that frames the scene.
+    /// Reads a scene, or the demo's if there is none, and finds the camera: that of a name, the file's first,
+    /// or one that frames the scene. What is not shown of it is for the caller to say.
     pub fn load(
-        self,
-        path: Option<&Path>,
-        camera: Option<&str>,
-        aspect: f64,
-    ) -> Result<(Scene, Camera), Failure> {
-        let found = self.load_silently(path, camera, aspect)?;
-        say_what_is_not_shown(&found.0, &scene_name(path));
-        Ok(found)
-    }
-
-    /// The same, and says nothing.
-    pub fn load_silently(
         self,
         path: Option<&Path>,
         camera: Option<&str>,

@@ -3,6 +3,7 @@
 
 use crate::canvas::Canvas;
 use crate::failure::Failure;
+use crate::film;
 use crate::output;
 use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage as _};
 use glam::{DVec3, Vec3};
@@ -102,7 +103,8 @@ impl Picture {
     pub fn save(&self, path: &Path, factor: u32, stops: f32) -> Result<(), Failure> {
         match Self::check_format(path)? {
             Format::Exr => self.resolve(factor, |radiance| radiance).save_exr(path),
-            Format::Png | Format::Gif => self.shown(factor, stops).save_png(path),
+            Format::Png => self.shown(factor, stops).save_png(path),
+            Format::Gif => film::save(path, &[self.shown(factor, stops)], 1),
         }
     }
 

@@ -52,6 +52,7 @@ const uint COUPLED_BY_ALBEDO = 2u;
 #include "shape_sampling.glsl"
 
 #include "light_sampling.glsl"
+#include "layers.glsl"
 
 layout(set = 0, binding = 8, rgba32f) uniform image2D radiance_image;
 
@@ -108,33 +109,6 @@ struct Lobes {
     float pane_probability; // and then of drawing from the second
 };
 
-// What facets reflect of light before it reaches a Lambert lobe below: by these reflectances, or, below a
-// film, by f0 and f90 of all that it covers.
-float above_lambert(vec2 reflectances, vec4 below_film, ArealightThinFilm film, vec3 view, vec3 half_vector) {
-    if (arealight_is_film(film)) {
-        vec3 fresnel = arealight_thin_film_reflectance(film, below_film.rgb, below_film.a,
-                                                       clamp(dot(view, half_vector), 0.0, 1.0));
-        return min(arealight_max_component(fresnel), 1.0);
-    }
-    return mix(reflectances.x, reflectances.y, arealight_schlick_weight(view, half_vector));
-}
-
-// What such facets reflect of light all around: by 16 x 16 visible normals, to 1e-3.
-float reflected(vec3 view, vec2 alpha, vec2 reflectances, vec4 below_film, ArealightThinFilm film) {
-    const int SIDE = 16;
-    float sum = 0.0;
-    for (int i = 0; i < SIDE * SIDE; i++) {
-        vec3 light = arealight_ggx_sample(view, alpha, (vec2(i % SIDE, i / SIDE) + 0.5) / float(SIDE));
-        float density = arealight_ggx_density(view, light, alpha);
-        if (light.z > 0.0 && density > 0.0) {
-            vec3 half_vector = arealight_normalize_or(view + light, vec3(0.0, 0.0, 1.0));
-            sum += above_lambert(reflectances, below_film, film, view, half_vector)
-                * arealight_ggx_evaluate(view, light, alpha, vec3(1.0), 1.0).x / density;
-        }
-    }
-    return sum / float(SIDE * SIDE);
-}
-
 // `base`: about what the lobes below the coat reflect.
 CoatLobe load_coat_lobe(ArealightFrame frame, ArealightCoat coat, float base) {
     vec3 view = vec3(frame.sin_view, 0.0, frame.cos_view);
@@ -145,7 +119,7 @@ CoatLobe load_coat_lobe(ArealightFrame frame, ArealightCoat coat, float base) {
     vec2 reflectances = vec2(share);
     if (COUPLED == COUPLED_BY_ALBEDO && coat.weight > 0.0) {
         reflectances = coat.weight * vec2(AREALIGHT_COAT_F0, 1.0);
-        share = reflected(own_view, vec2(alpha), reflectances, vec4(0.0), ArealightThinFilm(0.0, 1.0, 0.0));
+        share = reflected(own_view, vec2(alpha), reflectances, ArealightThinFilm(0.0, 1.0, 0.0), vec4(0.0));
     }
     float rest = (1.0 - share) * base;
     float probability = share > 0.0 ? clamp(share / (share + rest), 0.25, rest > 0.0 ? 0.75 : 1.0) : 0.0;
@@ -180,40 +154,6 @@ bool arrives(Lobes lobes, vec3 offset) {
     return arealight_bridge_blocker(origin, arealight_normalize_or(way, vec3(0.0)), distance) >= distance;
 }
 
-// Charlie's f cos for a colour of 1; 0 for light from below. The view's cosine is the frame's, from
-// AREALIGHT_FORMULA_MIN_COS_VIEW on.
-float sheen_evaluate(vec3 view, vec3 light, float roughness) {
-    if (light.z <= 0.0) {
-        return 0.0;
-    }
-    vec3 half_vector = arealight_normalize_or(view + light, vec3(0.0, 0.0, 1.0));
-    float exponent = 1.0 / (roughness * roughness);
-    float distribution = (2.0 + exponent)
-        * pow(dot(half_vector.xy, half_vector.xy), 0.5 * exponent) / (2.0 * AREALIGHT_PI);
-    float masking = 1.0 + arealight_sheen_masking(view.z, roughness)
-        + arealight_sheen_masking(light.z, roughness);
-    return distribution / (4.0 * view.z * masking);
-}
-
-// Charlie's albedo, by a midpoint rule of 32 x 24 nodes: to 1e-3.
-float sheen_true_albedo(vec3 view, float roughness) {
-    const int HEIGHTS = 32;
-    const int AZIMUTHS = 24;
-    float sum = 0.0;
-    for (int i = 0; i < HEIGHTS; i++) {
-        // Low light weighs most: z = t^3
-        float t = (float(i) + 0.5) / float(HEIGHTS);
-        float z = t * t * t;
-        float radius = sqrt(1.0 - z * z);
-        for (int j = 0; j < AZIMUTHS; j++) {
-            float phi = AREALIGHT_PI * (float(j) + 0.5) / float(AZIMUTHS);
-            sum += 3.0 * t * t * sheen_evaluate(view, vec3(radius * cos(phi), radius * sin(phi), z),
-                                                roughness);
-        }
-    }
-    return 2.0 * AREALIGHT_PI * sum / float(HEIGHTS * AZIMUTHS);
-}
-
 SheenLobe load_sheen_lobe(ArealightFrame frame, ArealightSheen sheen) {
     if (sheen.color == vec3(0.0)) {
         return SheenLobe(vec3(0.0), 1.0, 1.0);
@@ -222,6 +162,17 @@ SheenLobe load_sheen_lobe(ArealightFrame frame, ArealightSheen sheen) {
     float albedo = sheen_true_albedo(vec3(frame.sin_view, 0.0,
                                           max(frame.cos_view, AREALIGHT_FORMULA_MIN_COS_VIEW)), roughness);
     return SheenLobe(sheen.color, roughness, max(1.0 - arealight_max_component(sheen.color) * albedo, 0.0));
+}
+
+// A direction of the surface's frame in the frame of its GGX lobe, and back.
+vec3 to_axis(vec2 axis, vec3 direction) {
+    return vec3(dot(axis, direction.xy), axis.x * direction.y - axis.y * direction.x, direction.z);
+}
+vec3 to_axis(Lobes lobes, vec3 direction) {
+    return to_axis(lobes.axis, direction);
+}
+vec3 from_axis(Lobes lobes, vec3 direction) {
+    return vec3(lobes.axis * direction.x + vec2(-lobes.axis.y, lobes.axis.x) * direction.y, direction.z);
 }
 
 // `through`: the albedo of what is let through, and the part of it that is not diffused; `dielectric`: the
@@ -241,24 +192,15 @@ Lobes load_lobes(ArealightSurface surface, vec3 ray_origins[2], vec4 through, ve
         : 0.0;
     vec3 view = vec3(frame.sin_view, 0.0, frame.cos_view);
     vec2 above_diffuse = vec2(surface.interface_f0, surface.interface_f90);
-    vec3 along = vec3(dot(axis, view.xy), axis.x * view.y - axis.y * view.x, view.z);
     float taken = COUPLED == COUPLED_BY_ALBEDO && diffuse + let_through > 0.0
-        ? min(reflected(along, alpha, above_diffuse, vec4(surface.f0, surface.f90), surface.film), 1.0) : 0.0;
+        ? min(reflected(to_axis(axis, view), alpha, above_diffuse, surface.film,
+                        vec4(surface.f0, surface.f90)), 1.0) : 0.0;
     return Lobes(surface.position, ray_origins, arealight_frame_matrix(frame), view,
                  surface.diffuse_albedo, above_diffuse, taken, surface.f0, surface.f90, axis, alpha,
                  probability, load_coat_lobe(frame, surface.coat, glossy + diffuse),
                      load_sheen_lobe(frame, surface.sheen), surface.film,
                  through.rgb * (1.0 - through.a), through.rgb * through.a, dielectric,
                  transmission_probability, through.a);
-}
-
-// A direction of the surface's frame in the frame of its GGX lobe, and back.
-vec3 to_axis(Lobes lobes, vec3 direction) {
-    return vec3(dot(lobes.axis, direction.xy), lobes.axis.x * direction.y - lobes.axis.y * direction.x,
-                direction.z);
-}
-vec3 from_axis(Lobes lobes, vec3 direction) {
-    return vec3(lobes.axis * direction.x + vec2(-lobes.axis.y, lobes.axis.x) * direction.y, direction.z);
 }
 
 // The part of light from a direction that arrives below an interface that reflects `above` of it.
@@ -289,11 +231,9 @@ vec3 evaluate(Lobes lobes, vec3 light) {
     vec3 half_vector = arealight_normalize_or(lobes.view + light, vec3(0.0, 0.0, 1.0));
     vec3 f0 = lobes.f0;
     float f90 = lobes.f90;
-    float above = above_lambert(lobes.above_diffuse, vec4(f0, f90), lobes.film, lobes.view, half_vector);
-    vec3 fresnel = vec3(1.0);
+    vec3 fresnel = film_fresnel(lobes.film, f0, f90, lobes.view, half_vector);
+    float above = above_lambert(lobes.above_diffuse, lobes.film, fresnel, lobes.view, half_vector);
     if (arealight_is_film(lobes.film)) {
-        fresnel = arealight_thin_film_reflectance(lobes.film, f0, f90,
-                                                  clamp(dot(lobes.view, half_vector), 0.0, 1.0));
         f0 = vec3(1.0);
         f90 = 1.0;
     }

@@ -17,15 +17,11 @@ impl LitTexels {
         let (width, height) = (image.width as usize, image.height as usize);
         let stride = width + 1;
         let mut sums = vec![0_u32; stride * (height + 1)];
-        let mut texels = image.texels.clone();
-        for (_, frame) in &image.frames {
-            texels.iter_mut().zip(frame).for_each(|(texel, shown)| *texel |= shown);
-        }
-        for (y, row) in texels.chunks_exact(width).enumerate() {
+        let frames = || image.frames.iter().map(|(_, texels)| texels).chain([&image.texels]);
+        for y in 0..height {
             let mut row_sum = 0;
-            for (x, texel) in row.iter().enumerate() {
-                let [r, g, b, _] = texel.to_le_bytes();
-                row_sum += u32::from((r | g | b) != 0);
+            for x in 0..width {
+                row_sum += u32::from(frames().any(|texels| texels[y * width + x] & 0x00ff_ffff != 0));
                 sums[(y + 1) * stride + x + 1] = sums[y * stride + x + 1] + row_sum;
             }
         }

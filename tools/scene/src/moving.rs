@@ -18,7 +18,7 @@ pub(crate) fn frames(
     (bytes, format, limits): (&[u8], ImageFormat, Limits),
     still: &Image,
 ) -> Result<Vec<(f64, Vec<u32>)>, SceneError> {
-    let failed = |source| SceneError::Image { file: document.file.clone(), field: field.to_owned(), source };
+    let failed = |source| SceneError::Image { file: document.file.clone(), field: field.into(), source };
     let (mut shown, mut end) = (vec![], 0.0);
     let Some(frames) = decoded(bytes, format, limits).map_err(failed)? else { return Ok(shown) };
     for frame in frames {

@@ -98,8 +98,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             let message = format!("{}: the file's name must end in .png", path.display());
             return Err(Failure::Argument { argument: "--output", message });
         }
-        let read = [judged, truth].into_iter().chain(other);
-        output::check(path, read.map(PathBuf::as_path))?;
+        output::check(path, [judged, truth].into_iter().chain(other).map(PathBuf::as_path))?;
     }
     if !(scale.is_finite() && *scale > 0.0) {
         return Err(Failure::Argument { argument: "--scale", message: format!("{scale} is not above 0") });

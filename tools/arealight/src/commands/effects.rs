@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::lights::LightArguments;
-use crate::output::print;
+use crate::output::{print, say_what_is_not_shown};
 use arealight::Effects;
 use arealight_scene::{RequiredEffect, required_effects};
 use serde_json::json;
@@ -27,6 +27,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // No effect depends on where a camera is
     let (scene, _) = arguments.lights.load(Some(&arguments.scene), None, 1.0)?;
+    say_what_is_not_shown(&scene, &arguments.scene);
     let required = required_effects(&scene);
     print(&if arguments.json { to_json(arguments, &required) } else { to_text(&required) })
 }

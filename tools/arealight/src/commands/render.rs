@@ -4,6 +4,7 @@ mod bands;
 mod frames;
 mod rounds;
 mod shading;
+mod summary;
 
 use crate::failure::Failure;
 use crate::gpu;
@@ -17,12 +18,10 @@ use arealight::Effects;
 use arealight_engine::Fog;
 use arealight_scene::{Camera, Scene, SceneFog};
 use frames::{FilmArguments, Frame, Reel};
-use serde_json::json;
-use shading::{Outcome, render};
-use std::collections::BTreeMap;
+use shading::render;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
+use summary::{Phases, Summary};
 
 /// Render a glTF scene: what emits is a light.
 ///
@@ -157,10 +156,11 @@ impl Arguments {
         let aspect = f64::from(self.size[0]) / f64::from(self.size[1]);
         let (path, camera) = (self.scene.as_deref(), self.camera.as_deref());
         let lights = self.film.seconds(index).map_or(self.lights, |seconds| self.lights.later(seconds));
+        let found = lights.load(path, camera, aspect)?;
         if index == 0 {
-            return lights.load(path, camera, aspect);
+            output::say_what_is_not_shown(&found.0, &self.scene_name());
         }
-        lights.load_silently(path, camera, aspect)
+        Ok(found)
     }
 
     fn shadow_level(&self) -> Shadows {
@@ -217,10 +217,13 @@ enum Coupling {
 
 impl Coupling {
     fn of(self, surfaces: Effects) -> Effects {
-        let layers =
-            [(Effects::COUPLED, Effects::COUPLED_BY_ALBEDO), (Effects::COAT, Effects::COAT_BY_ALBEDO)];
-        let there = layers.into_iter().filter(|(layer, _)| self == Self::Albedo && surfaces.contains(*layer));
-        there.fold(surfaces, |surfaces, (_, by_albedo)| surfaces | by_albedo)
+        let layered = |layer: Effects, by_albedo: Effects| {
+            let is_there = self == Self::Albedo && surfaces.contains(layer);
+            if is_there { by_albedo } else { Effects::empty() }
+        };
+        surfaces
+            | layered(Effects::COUPLED, Effects::COUPLED_BY_ALBEDO)
+            | layered(Effects::COAT, Effects::COAT_BY_ALBEDO)
     }
 }
 
@@ -254,34 +257,6 @@ impl SurfaceChoice {
 /// The most texels a side that a light's texture gets.
 pub(super) const TEXTURE_SIZE: u32 = 1024;
 
-/// What took how long by the clock on the wall, in seconds, in order.
-#[derive(Default)]
-struct Phases(Vec<(&'static str, f64)>);
-
-impl Phases {
-    /// Does a phase's work.
-    fn time<T>(&mut self, name: &'static str, work: impl FnOnce() -> T) -> T {
-        let began = Instant::now();
-        let done = work();
-        let seconds = began.elapsed().as_secs_f64();
-        match self.0.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, sum)) => *sum += seconds,
-            None => self.0.push((name, seconds)),
-        }
-        done
-    }
-
-    fn to_text(&self) -> String {
-        let phases: Vec<String> =
-            self.0.iter().map(|(name, seconds)| format!("{name} {seconds:.2} s")).collect();
-        phases.join(", ")
-    }
-
-    fn to_json(&self) -> serde_json::Value {
-        self.0.iter().map(|(name, seconds)| (name.replace(' ', "_"), json!(seconds))).collect()
-    }
-}
-
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Read the scene
     let mut phases = Phases::default();
@@ -303,15 +278,19 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (origin, exposure) = (camera.position, arguments.exposure);
     let mut frame = Frame { index: 0, origin, exposure, shadows: vec![] };
     let mut before = None;
-    let bar = arguments.film.frames.map(|count| progress::bar(count.into(), "pictures"));
+    let film = |count: u32| progress::bar(count.into(), "pictures");
+    let bar = arguments.film.frames.map_or_else(indicatif::ProgressBar::hidden, film);
     let mut shown = vec![];
     let outcome = loop {
-        if scene.has_moving_images() || shown != scene.light_textures {
-            phases
-                .time("light textures", || engine.load_scene_textures(&scene, TEXTURE_SIZE))
-                .map_err(|error| gpu::failure(error, &path))?;
-            shown.clone_from(&scene.light_textures);
-        }
+        phases
+            .time("light textures", || {
+                if shown == scene.light_textures {
+                    return engine.show_frames(&scene);
+                }
+                engine.load_scene_textures(&scene, TEXTURE_SIZE)
+            })
+            .map_err(|error| gpu::failure(error, &path))?;
+        shown.clone_from(&scene.light_textures);
         let of = (surfaces, quality);
         let outcome = phases
             .time("picture", || render(&engine, &scene, &camera, samples, of, (arguments, &mut frame)))
@@ -319,9 +298,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         let (factor, stops) = (arguments.supersample, outcome.stops);
         phases.time("save", || reel.add(frame.index, &outcome.picture, (factor, stops)))?;
         let outcome = outcome.after(before);
-        if let Some(bar) = &bar {
-            bar.inc(1);
-        }
+        bar.inc(1);
         frame.index += 1;
         if frame.index == arguments.film.count() {
             break outcome;
@@ -330,9 +307,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         before = Some(outcome);
         (scene, camera) = phases.time("load", || arguments.load(frame.index))?;
     };
-    if let Some(bar) = bar {
-        bar.finish_and_clear();
-    }
+    bar.finish_and_clear();
 
     // Say so
     let output = &reel.file(0);
@@ -369,131 +344,6 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     text.split_once(['x', 'X'])
         .and_then(|(width, height)| Some([side(width)?, side(height)?]))
         .ok_or_else(|| "must be like 1280x720, each side from 1 to 8192".to_owned())
-}
-
-/// What there is to say of a render.
-struct Summary<'a> {
-    arguments: &'a Arguments,
-    scene: &'a Scene,
-    surfaces: Effects,
-    level: &'static str,
-    camera: &'a Camera,
-    device: String,
-    outcome: &'a Outcome,
-    phases: &'a Phases,
-    output: &'a Path,
-}
-
-impl Summary<'_> {
-    fn to_text(&self) -> String {
-        let Self { arguments, scene, surfaces, level, camera, device, outcome, phases, output } = self;
-        let (width, height) = (arguments.size[0], arguments.size[1]);
-        let vertices: usize = scene.lights.iter().map(|light| light.shape.vertices().len()).sum();
-        let mut lines = vec![format!(
-            "scene    {}: {} triangles, {} lights ({vertices} vertices), camera '{}'",
-            arguments.scene_name().display(),
-            scene.triangles.len(),
-            scene.lights.len(),
-            camera.name
-        )];
-        for (index, effect) in arealight_scene::required_effects(scene).iter().enumerate() {
-            lines.push(format!("{} {effect}", if index == 0 { "effects " } else { "        " }));
-        }
-        if arguments.surfaces != SurfaceChoice::Required {
-            lines.push(format!("surfaces {surfaces}"));
-        }
-        if arguments.reference.is_none() {
-            lines.push(format!("level    {level}"));
-        }
-        lines.push(format!("device   {device}"));
-        let method = match arguments.reference_samples() {
-            None => "shading".to_owned(),
-            Some(samples) => format!("reference ({samples} samples a pixel)"),
-        };
-        lines.push(format!(
-            "time     visibility {}, {method} {}, by the device's clock",
-            milliseconds(outcome.visibility),
-            milliseconds(outcome.shading)
-        ));
-        lines.push(format!("         {}, by the clock on the wall", phases.to_text()));
-        if let Some(text) = outcome.rays_text(arguments.supersample.pow(2)) {
-            lines.push(text);
-        }
-        if let Some(fog) = outcome.fog {
-            lines.push(format!("fog      {}", milliseconds(Some(fog))));
-        }
-        if let Some(tiles) = &outcome.tiles {
-            let classes: Vec<_> =
-                tiles.classes.iter().map(|(class, count)| format!("{count} {class}")).collect();
-            lines.push(if tiles.is_classified() {
-                format!("tiles    {}; {:.1} lights each", classes.join(", "), tiles.lights_per_tile())
-            } else {
-                "tiles    not classified: that would take longer than so few quads".to_owned()
-            });
-        }
-        let per_pixel = arguments.supersample * arguments.supersample;
-        let films = arguments.film.frames.map_or_else(String::new, |count| format!(", {count} in all"));
-        lines.push(format!(
-            "picture  {}{films} ({width}x{height}, {per_pixel} sample{} a pixel, exposure {} EV)\n",
-            output.display(),
-            if per_pixel == 1 { "" } else { "s" },
-            stops_text(outcome.stops)
-        ));
-        lines.join("\n")
-    }
-
-    fn to_json(&self) -> String {
-        let Self { arguments, scene, surfaces, level, camera, device, outcome, phases, output } = self;
-        let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
-        let required = arealight_scene::required_effects(scene);
-        let effects: Vec<_> = required
-            .iter()
-            .map(|one| json!({ "effect": one.effect.to_string(), "reason": one.reason }))
-            .collect();
-        let rays = outcome.rays(arguments.supersample.pow(2));
-        let summary = json!({
-            "scene": arguments.scene_name(),
-            "triangles": scene.triangles.len(),
-            "lights": scene.lights.len(),
-            "camera": camera.name,
-            "effects": effects,
-            "surfaces_shaded_with": surfaces.names(),
-            "level": level,
-            "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
-            "notes": scene.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
-            "device": device,
-            "reference_samples": arguments.reference_samples(),
-            "tiles": outcome.tiles.as_ref().map(|tiles| json!({
-                "classes": tiles.classes.iter()
-                    .map(|(class, count)| (class.name(), count)).collect::<BTreeMap<_, _>>(),
-                "lights_per_tile": tiles.lights_per_tile(),
-            })),
-            "shadow_rays": rays.map(|[_, mean]| mean),
-            "shadow_rays_most": rays.map(|[most, _]| most),
-            "shadow_noise": outcome.noise,
-            "fog_seconds": seconds(outcome.fog),
-            "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },
-            "seconds": phases.to_json(),
-            "picture": output,
-            "frames": arguments.film.frames,
-            "size": arguments.size,
-            "exposure": outcome.stops,
-            "samples_per_pixel": arguments.supersample * arguments.supersample,
-        });
-        format!("{summary:#}\n")
-    }
-}
-
-/// To a hundredth, with its sign.
-fn stops_text(stops: f32) -> String {
-    format!("{:+}", (stops * 100.0).round() / 100.0)
-}
-
-fn milliseconds(time: Option<Duration>) -> String {
-    time.map_or_else(
-        || "not known (no timestamps)".to_owned(),
-        |time| format!("{:.1} ms", time.as_secs_f64() * 1e3),
-    )
 }
 
 #[cfg(test)]

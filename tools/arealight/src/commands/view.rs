@@ -2,7 +2,6 @@
 
 use crate::canvas::Canvas;
 use crate::failure::Failure;
-use crate::film::Palette;
 use crate::gpu;
 use crate::lights::{LightArguments, scene_name};
 use crate::output::{self, print};
@@ -65,6 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
     let (scene, camera) =
         arguments.lights.load(arguments.scene.as_deref(), arguments.camera.as_deref(), aspect)?;
+    output::say_what_is_not_shown(&scene, &path);
     let script = arguments.script.as_deref().map(read_script).transpose()?;
     let exposure = match arguments.exposure {
         Exposure::Stops(stops) => stops,
@@ -149,10 +149,7 @@ fn record(
     }
     bar.finish_and_clear();
     let film = folder.join(FILM);
-    let bytes =
-        crate::film::encode(&frames, (100 / arguments.rate) as u16, Palette { colors: 255, dither: 6 })
-            .map_err(|error| Failure::output(&film, error))?;
-    output::write(&film, &bytes)?;
+    crate::film::save(&film, &frames, arguments.rate)?;
     eprintln!("wrote {} frames and {}", frames.len(), film.display());
     if arguments.json { print(&format!("{:#}\n", json!({ "frames": said }))) } else { Ok(ExitCode::SUCCESS) }
 }

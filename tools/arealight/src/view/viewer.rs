@@ -245,6 +245,7 @@ impl<'a> Viewer<'a> {
             return Ok(());
         }
         let mut scene = self.original.clone();
+        scene.show_frames(state.time);
         lamps::edit(&mut scene, &placed.lamps);
         for material in &mut scene.materials {
             let roughness = material.material.roughness + placed.rougher;
@@ -259,7 +260,6 @@ impl<'a> Viewer<'a> {
         let frames = self.scene.frames_at(time);
         if self.frames != frames {
             self.frames = frames;
-            self.original.show_frames(time);
             self.scene.show_frames(time);
             self.engines.ours.show_frames(&self.scene)?;
             self.buffers.show_frames(&self.scene);
@@ -398,13 +398,8 @@ impl<'a> Viewer<'a> {
         };
         if truth.samples() < MOST_SAMPLES {
             let coupled = self.scene.surfaces().contains(Effects::COUPLED);
-            let reference = Reference {
-                samples,
-                seed: truth.samples(),
-                shadows: seen.shadows,
-                coupled,
-                by_albedo: false,
-            };
+            let (seed, shadows) = (truth.samples(), seen.shadows);
+            let reference = Reference { samples, seed, shadows, coupled, ..Reference::default() };
             self.begin()?;
             self.renderer.reference(reference, |_| {})?;
             if let Some(fog) = self.fog(seen) {

@@ -14,6 +14,12 @@ pub fn run(folder: &Path, arguments: &[&str]) -> Output {
         .expect("the program starts")
 }
 
+/// The part of the bytes of two pictures that differ visibly.
+pub fn difference(a: &[u8], b: &[u8]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > 2).count() as f64 / a.len() as f64
+}
+
 /// Something where there is a device; none is asked for by the tests themselves.
 pub fn device() -> Option<()> {
     device_with(Validation::Off).map(drop)

@@ -1,6 +1,6 @@
 //! `arealight render --frames`: pictures of times that follow each other.
 
-use crate::common::{device, run};
+use crate::common::{device, difference, run};
 use std::path::Path;
 
 /// Renders the cinema into a folder. What was said.
@@ -15,11 +15,6 @@ fn render(folder: &Path, options: &[&str]) -> String {
 
 fn picture(folder: &Path, name: &str) -> Vec<u8> {
     image::open(folder.join(name)).unwrap().to_rgb8().into_raw()
-}
-
-/// The part of the bytes that differ visibly.
-fn difference(a: &[u8], b: &[u8]) -> f64 {
-    a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > 2).count() as f64 / a.len() as f64
 }
 
 #[test]
@@ -61,10 +56,8 @@ fn a_films_shadows_have_less_noise_than_a_pictures() {
         found["rmse_over_mean"].as_f64().unwrap()
     };
     let film = |history: &[&str], name: &str| {
-        render(
-            path,
-            &[&still[..], &["--frames", "8", "-o", name, "--shadows", "filtered:1"], history].concat(),
-        );
+        let eight = ["--frames", "8", "--shadows", "filtered:1", "-o", name];
+        render(path, &[&still[..], &eight, history].concat());
     };
     film(&[], "film.exr");
     let (first, last) = (noise("film-0000.exr"), noise("film-0007.exr"));

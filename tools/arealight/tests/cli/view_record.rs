@@ -1,6 +1,6 @@
 //! The viewer without a window: what a script does is what the frames show.
 
-use crate::common::{device, run};
+use crate::common::{device, difference, run};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -41,9 +41,7 @@ impl Recording {
 
     /// The part of the bytes that differ between two frames.
     fn difference(&self, a: usize, b: usize) -> f64 {
-        let (a, b) = (self.pixels(a), self.pixels(b));
-        assert_eq!(a.len(), b.len());
-        a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count() as f64 / a.len() as f64
+        difference(&self.pixels(a), &self.pixels(b))
     }
 }
 

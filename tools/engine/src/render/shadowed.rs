@@ -179,9 +179,6 @@ impl SceneRenderer<'_> {
             shadow: Kept::new(host, shadow),
         };
         self.bind_shadowed(&view)?;
-        let frame = self.shade_frame();
-        view.shade.prepare(&frame)?;
-        view.shadow.prepare(frame.lights)?;
         Ok(view)
     }
 
@@ -198,7 +195,9 @@ impl SceneRenderer<'_> {
             view.shadow.write_set(view.sets[1], &resources, &self.shadow_resources(view))?;
         }
         // doc end
-        Ok(())
+        let frame = self.shade_frame();
+        view.shade.prepare(&frame)?;
+        Ok(view.shadow.prepare(frame.lights)?)
     }
 
     /// Makes the shadows of another view those of this one, which is of the next frame: they go on.
@@ -212,10 +211,7 @@ impl SceneRenderer<'_> {
     ) -> Result<(), EngineError> {
         view.blockers = Rc::clone(blockers);
         view.masks = blockers.is_masked.then(|| self.masks()).transpose()?;
-        self.bind_shadowed(view)?;
-        let frame = self.shade_frame();
-        view.shade.prepare(&frame)?;
-        Ok(view.shadow.prepare(frame.lights)?)
+        self.bind_shadowed(view)
     }
 
     /// [`SceneRenderer::shadowed`] of each pass over the options' surfaces.

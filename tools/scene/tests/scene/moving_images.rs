@@ -25,6 +25,14 @@ fn bytes(hexadecimal: &str) -> Vec<u8> {
     digits.chunks(2).map(|pair| pair[0] << 4 | pair[1]).collect()
 }
 
+/// A PNG of two texels that does not move.
+fn still(texels: [u8; 6]) -> Vec<u8> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    let image = image::RgbImage::from_raw(2, 1, texels.to_vec()).unwrap();
+    image.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    png.into_inner()
+}
+
 /// A panel that shows an image, upright.
 fn screen(image: &[u8]) -> Writer {
     let mut writer = Writer::new();
@@ -67,9 +75,7 @@ fn the_frame_of_a_time_is_shown() {
         }
     }
     // The twin: an image that does not move
-    let mut still = std::io::Cursor::new(Vec::new());
-    image::RgbImage::new(2, 1).write_to(&mut still, image::ImageFormat::Png).unwrap();
-    let still = load(screen(still.get_ref()));
+    let still = load(screen(&still([0; 6])));
     assert_eq!((still.frames_at(0.2), still.has_moving_images()), (vec![None], false));
 }
 
@@ -87,10 +93,7 @@ fn what_is_black_at_first_may_shine_later() {
     };
     assert_eq!(lights(&bytes(APNG)), 2);
     // The twin: an image of the first frame
-    let mut still = std::io::Cursor::new(Vec::new());
-    let first = image::RgbImage::from_raw(2, 1, vec![255, 0, 0, 0, 0, 0]).unwrap();
-    first.write_to(&mut still, image::ImageFormat::Png).unwrap();
-    assert_eq!(lights(still.get_ref()), 1);
+    assert_eq!(lights(&still([255, 0, 0, 0, 0, 0])), 1);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::canvas::Canvas;
 use crate::failure::Failure;
-use crate::film::{self, Palette};
+use crate::film;
 use crate::output;
 use crate::picture::{Exposure, Format, Picture};
 use arealight_engine::ShadowedView;
@@ -42,7 +42,7 @@ pub struct Frame {
     pub origin: DVec3,
     /// The first one's, where it is found by itself.
     pub exposure: Exposure,
-    /// What shadows remember.
+    /// The passes of shadows, with their history.
     pub shadows: Vec<ShadowedView>,
 }
 
@@ -84,9 +84,8 @@ impl<'a> Reel<'a> {
         if self.film.frames.is_none() || self.format == Format::Gif {
             return self.path.to_owned();
         }
-        let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
-        let (stem, ending) = (part(self.path.file_stem()), part(self.path.extension()));
-        self.path.with_file_name(format!("{stem}-{index:04}.{ending}"))
+        let ending = self.path.extension().unwrap_or_default().to_string_lossy();
+        format!("{}-{index:04}.{ending}", self.path.with_extension("").display()).into()
     }
 
     /// Writes the next picture, of `factor` × `factor` samples a pixel; a .gif with its last one.
@@ -98,10 +97,7 @@ impl<'a> Reel<'a> {
         if index + 1 < self.film.count() {
             return Ok(());
         }
-        let delay = (100 / self.film.rate).max(1) as u16;
-        let bytes = film::encode(&self.shown, delay, Palette { colors: 255, dither: 6 })
-            .map_err(|error| Failure::output(self.path, error))?;
-        output::write(self.path, &bytes)
+        film::save(self.path, &self.shown, self.film.rate)
     }
 }
 

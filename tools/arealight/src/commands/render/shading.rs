@@ -33,6 +33,11 @@ pub struct Outcome {
     pub noise: Option<f64>,
 }
 
+/// Both times, where both are known.
+fn sum(all: Option<Duration>, one: Option<Duration>) -> Option<Duration> {
+    all.zip(one).map(|(all, one)| all + one)
+}
+
 /// The most bands: rows of the largest picture.
 const MOST_BANDS: u32 = 1 << 16;
 
@@ -61,7 +66,6 @@ impl Outcome {
         tiles: Option<TileCounts>,
         pixels: Vec<Vec3>,
     ) {
-        let sum = |all: Option<Duration>, one: Option<Duration>| all.zip(one).map(|(all, one)| all + one);
         self.visibility = sum(self.visibility, visibility);
         self.shading = sum(self.shading, shading);
         self.picture.pixels.extend(pixels);
@@ -75,7 +79,6 @@ impl Outcome {
     #[must_use]
     pub fn after(self, before: Option<Self>) -> Self {
         let Some(before) = before else { return self };
-        let sum = |all: Option<Duration>, one: Option<Duration>| all.zip(one).map(|(all, one)| all + one);
         Self {
             visibility: sum(before.visibility, self.visibility),
             shading: sum(before.shading, self.shading),
@@ -126,9 +129,9 @@ pub fn render(
     let mut emission = vec![];
     let fog = arguments.fog.of(scene, camera);
     let most_stops = most_stops(scene);
-    // A film's shadows remember, but in bands, each of which would take memory
-    let remembers = arguments.film.frames.is_some() && arguments.shadow_noise.is_none() && bands.len() == 1;
-    let history = if remembers { ShadowHistory::Camera } else { ShadowHistory::Off };
+    // A film's shadows have a history; not in bands, each of which would need a buffer of its own
+    let has_history = arguments.film.frames.is_some() && arguments.shadow_noise.is_none() && bands.len() == 1;
+    let history = if has_history { ShadowHistory::Camera } else { ShadowHistory::Off };
     let first_seed = arguments.seed.wrapping_add(frame.index);
     for (index, band) in bands.iter().enumerate() {
         let in_band = band.size(size[0]);
@@ -139,7 +142,7 @@ pub fn render(
         let lamps = colors(&mut renderer)?;
         // Frames of a film, bands and rounds each have seeds of their own, one after the other
         let of_band = || first_seed.wrapping_mul(MOST_BANDS).wrapping_add(index as u32);
-        let seed = if remembers { first_seed } else { of_band().wrapping_mul(MOST_ROUNDS) };
+        let seed = if has_history { first_seed } else { of_band().wrapping_mul(MOST_ROUNDS) };
         let shadows = match arguments.shadow_level() {
             Shadows::Rays(shadow_rays, filter) if arguments.reference.is_none() => {
                 let options = ShadeOptions { surfaces, quality, shadow_rays, ..ShadeOptions::default() };
@@ -167,7 +170,7 @@ pub fn render(
         };
         if let Some(rounds) = Rounds::of(arguments, &view, in_band, stops) {
             let converged = rounds.go_on(&renderer, (&lamps, &found), &bar)?;
-            shading = shading.zip(converged.took).map(|(one, more)| one + more);
+            shading = self::sum(shading, converged.took);
             found = converged.picture;
             let [most, mean] = converged.rays;
             let part = f64::from(band.kept.end - band.kept.start) / f64::from(size[1]);
@@ -185,7 +188,7 @@ pub fn render(
             sum.fog = took.map(|took| sum.fog.unwrap_or_default() + took);
             found = colors(&mut renderer)?;
         }
-        if let Some(shadows) = view.shadows.take().filter(|_| remembers) {
+        if let Some(shadows) = view.shadows.take().filter(|_| has_history) {
             frame.shadows = shadows.passes;
         }
         if matches!(frame.exposure, Exposure::Auto) {
