@@ -8,6 +8,7 @@
 #include "light_records.glsl"
 #include "light_vertices.glsl"
 #include "arealight/form_factor/tube_outline.glsl"
+#include "arealight/lights/face_cluster.glsl"
 #include "arealight/shadows/outline_sampling.glsl"
 
 struct PickedLight {
@@ -17,6 +18,13 @@ struct PickedLight {
     uint row;                       // of a mesh: that of the next face, and the last one's end
     uint end;
     bool is_mesh;
+    // Of a mesh: the outline stands for a cluster, its rows and its form factor; and whether those in it are
+    // whole ones, too
+    bool is_cluster;
+    uint cluster_row;
+    uint cluster_end;
+    float cluster_weight;
+    bool in_cluster;
     bool two_sided;
     vec3 cap;      // of a tube, the center of the flat end that is seen beside its side, from the point
     vec3 cap_axis; // along the tube, as long as its radius; zero where there is no such end
@@ -70,6 +78,8 @@ PickedLight picked_light(uint pick, vec3 position) {
     PickedLight light;
     light.error = arealight_position_error(position);
     light.is_mesh = false;
+    light.is_cluster = false;
+    light.in_cluster = false;
     light.cap_axis = vec3(0.0);
     light.row = 0u;
     light.end = 0u;
@@ -105,10 +115,31 @@ PickedLight picked_light(uint pick, vec3 position) {
     return light;
 }
 
-// Goes on to the next face of a mesh that is lit towards the point; false after the last one.
-bool next_face(inout PickedLight light) {
+// Goes on to the next face of a mesh that is lit towards the point, or to the next cluster that is one from
+// there; false after the last one.
+bool next_face(inout PickedLight light, mat3 to_space, ArealightSpaceSize size) {
     while (light.row + 1u < light.end) {
         vec4 face = arealight_bridge_face(light.row);
+        light.is_cluster = face.w < 0.0;
+        if (light.is_cluster) {
+            vec3 center = light.center + face.xyz;
+            vec3 in_space = to_space * center;
+            int choice = light.in_cluster
+                             ? AREALIGHT_CLUSTER_WHOLE
+                             : arealight_cluster_choice(light.row, in_space, size, in_space.z * size.lower);
+            uint row = light.row;
+            light.row = arealight_after_cluster(row, light.end, face, choice);
+            if (choice == AREALIGHT_CLUSTER_WHOLE) {
+                light.cluster_row = row + AREALIGHT_CLUSTER_ROWS;
+                light.cluster_end = light.row;
+                light.cluster_weight = max(arealight_cluster_form_factor(row, center, in_space, size,
+                                                                         light.two_sided).z, 0.0);
+                // Where no face in it is lit
+                light.outline = sphere_outline(center, 0.5 * arealight_bridge_face(row + 2u).w);
+                return true;
+            }
+            continue;
+        }
         uint first = light.row + 1u;
         uint count = clamp(uint(face.w), 1u, light.end - first);
         light.row = first + count;
@@ -135,34 +166,47 @@ bool next_end(inout PickedLight light) {
 }
 
 // Goes on to the next outline of a light of several.
-bool next_outline(inout PickedLight light) {
-    return light.is_mesh ? next_face(light) : next_end(light);
+bool next_outline(inout PickedLight light, mat3 to_space, ArealightSpaceSize size) {
+    return light.is_mesh ? next_face(light, to_space, size) : next_end(light);
+}
+
+float outline_weight(PickedLight light, mat3 to_space) {
+    return light.is_cluster ? light.cluster_weight : arealight_outline_weight(light.outline, to_space);
 }
 
 // The size of the form factor of a light in the space that `to_space` leads to: of several outlines their
 // sum.
 float picked_light_weight(PickedLight light, mat3 to_space) {
+    ArealightSpaceSize size = arealight_space_size(to_space);
     float sum = light.is_mesh ? 0.0 : arealight_outline_weight(light.outline, to_space);
-    while (next_outline(light)) {
-        sum += arealight_outline_weight(light.outline, to_space);
+    while (next_outline(light, to_space, size)) {
+        sum += outline_weight(light, to_space);
     }
     return sum;
 }
 
-// The outline to draw over: of several one, chosen by its form factor.
+// The outline to draw over: of several one, chosen by its form factor; of a cluster one in it.
 ArealightShadowOutline chosen_outline(PickedLight light, mat3 to_space, inout float random) {
     if (!light.is_mesh && (!HAS_TUBES || light.cap_axis == vec3(0.0))) {
         return light.outline;
     }
-    ArealightShadowOutline chosen = light.outline;
+    PickedLight chosen = light;
+    ArealightSpaceSize size = arealight_space_size(to_space);
     float sum = light.is_mesh ? 0.0 : arealight_outline_weight(light.outline, to_space);
-    while (next_outline(light)) {
-        float weight = arealight_outline_weight(light.outline, to_space);
-        if (weight > 0.0 && arealight_choose(random, sum, weight)) {
-            chosen = light.outline;
+    do {
+        chosen.is_cluster = false;
+        while (next_outline(light, to_space, size)) {
+            float weight = outline_weight(light, to_space);
+            if (weight > 0.0 && arealight_choose(random, sum, weight)) {
+                chosen = light;
+            }
         }
-    }
-    return chosen;
+        light.row = chosen.cluster_row;
+        light.end = chosen.cluster_end;
+        light.in_cluster = true;
+        sum = 0.0;
+    } while (HAS_MESHES && chosen.is_cluster);
+    return chosen.outline;
 }
 
 #endif

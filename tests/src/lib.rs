@@ -8,6 +8,7 @@ mod cases;
 mod compare;
 pub mod floor;
 pub mod frame;
+pub mod globe;
 pub mod kernel;
 mod levels;
 pub mod lobe;

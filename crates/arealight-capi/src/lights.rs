@@ -177,7 +177,13 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
     let wrong = |name, number, known| Failure::argument(format!("{}: {number} is no {known}", field(name)));
     let [center, axis_u, axis_v] = [light.center, light.axis_u, light.axis_v].map(DVec3::from_array);
     let radius = light.radius;
-    arguments::refuse_reserved(light.reserved, &field("reserved"))?;
+    let error = f64::from(light.cluster_error);
+    if !(error >= 0.0 && error.is_finite()) {
+        return Err(Failure::argument(format!(
+            "{}: {error} is not finite and 0 or more",
+            field("cluster_error")
+        )));
+    }
     // SAFETY: the same contract, here and below.
     let outlines = || unsafe { read_outlines(light, &field) };
     let (mut uvs, mut holes) = (vec![], vec![]);
@@ -193,7 +199,7 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
             let (count, counts) = (light.face_count as usize, light.face_vertex_counts);
             // SAFETY: as above.
             let faces = unsafe { arguments::array(counts, count, &field("face_vertex_counts")) }?.to_vec();
-            LightShape::Mesh { vertices: outlines()?.remove(0), faces }
+            LightShape::mesh(outlines()?.remove(0), faces).clustered(error)
         }
         AREALIGHT_LIGHT_DISK => LightShape::Disk { center, axis_u, axis_v },
         AREALIGHT_LIGHT_SPHERE => LightShape::Sphere { center, radius },

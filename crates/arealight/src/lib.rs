@@ -74,6 +74,7 @@
 mod azimuth;
 pub mod blockers;
 pub mod effects;
+mod face_clusters;
 pub mod gpu;
 mod grid;
 pub mod holes;
@@ -102,6 +103,8 @@ pub mod tiles;
 pub use blockers::{BlockerError, Blockers};
 #[doc(inline)]
 pub use effects::Effects;
+#[doc(inline)]
+pub use face_clusters::FaceClusters;
 /// The vectors and matrices that lights and frames are made of, so that a host needs no version of its own to
 /// agree.
 pub use glam;

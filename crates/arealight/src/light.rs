@@ -208,7 +208,7 @@ pub(crate) mod tests {
         let (axis_u, axis_v) = (DVec3::X, DVec3::Y);
         let opening = Some(Opening { center: DVec3::Z, axis_u, axis_v, housed: true });
         let light = |shape| Light { radiance: Vec3::ONE, shape, ..Light::default() };
-        let mesh = LightShape::Mesh { vertices: [&vertices[..], &vertices[..3]].concat(), faces: vec![4, 3] };
+        let mesh = LightShape::mesh([&vertices[..], &vertices[..3]].concat(), vec![4, 3]);
         let lights = [
             Light { texture: shown(uvs), opening, ..light(LightShape::Polygon(vertices.clone())) },
             light(mesh),

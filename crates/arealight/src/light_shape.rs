@@ -1,5 +1,6 @@
 //! The shapes of lights: polygons, meshes, disks, spheres and tubes.
 
+use crate::FaceClusters;
 use glam::{DAffine3, DVec3};
 use std::f64::consts::PI;
 
@@ -19,6 +20,8 @@ pub enum LightShape {
         vertices: Vec<DVec3>,
         /// How many of the vertices each face has; one face alone is a polygon.
         faces: Vec<u32>,
+        /// None, or as [`LightShape::clustered`] made them for these faces as they are.
+        clusters: FaceClusters,
     },
     /// A flat disk or ellipse: `center + cos(t) axis_u + sin(t) axis_v` is its outline. A disk has
     /// perpendicular axes of one length; any two axes that are not parallel will do. The front is the side of
@@ -90,8 +93,11 @@ impl LightShape {
         edges.into_iter().find(|edge| *edge != DVec3::ZERO).unwrap_or(DVec3::ZERO)
     }
 
-    /// As [`LightShape::vertices`], to be moved.
+    /// As [`LightShape::vertices`], to be moved. A mesh has no clusters then.
     pub fn vertices_mut(&mut self) -> &mut [DVec3] {
+        if let Self::Mesh { clusters, .. } = self {
+            *clusters = FaceClusters::default();
+        }
         match self {
             Self::Polygon(vertices) | Self::Mesh { vertices, .. } => vertices,
             _ => &mut [],
@@ -118,7 +124,7 @@ impl LightShape {
         let mut shape = self.clone();
         match &mut shape {
             Self::Polygon(vertices) => turn(vertices),
-            Self::Mesh { vertices, faces } => {
+            Self::Mesh { vertices, faces, .. } => {
                 let mut rest = vertices.as_mut_slice();
                 for face in faces {
                     // Faces of more vertices than there are: the light is refused for that
@@ -140,7 +146,10 @@ impl LightShape {
                 *radius *= (volume.abs() / longer).sqrt();
             }
         }
-        shape
+        match shape.clusters().error {
+            0.0 => shape,
+            error => shape.clustered(error),
+        }
     }
 
     /// Whether it is a polygon or a mesh.

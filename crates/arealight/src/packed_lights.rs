@@ -5,7 +5,7 @@ use crate::gpu::{GpuLight, GpuShape};
 use crate::light_fault::{LightError, LightFault};
 use crate::light_shape::area_of;
 use crate::light_texture::TextureMap;
-use crate::{Effects, Light, LightShape, Profile};
+use crate::{Effects, Light, LightShape, Profile, face_clusters};
 use glam::DVec3;
 
 mod shapes;
@@ -98,6 +98,26 @@ impl PackedLights {
         Ok(packed)
     }
 
+    /// The row of [`PackedLights::vertices`] of each vertex of a record, in the order of
+    /// [`LightShape::vertices`].
+    pub fn vertex_rows(&self, record: &GpuLight) -> Vec<u32> {
+        let (mut row, end) = (record.first_vertex, record.first_vertex + record.vertex_count);
+        if record.flags & GpuLight::MESH == 0 {
+            return (row..end).collect();
+        }
+        let mut rows = vec![];
+        while let Some(head) = self.vertices.get(row as usize).filter(|_| row < end) {
+            if head[3] < 0.0 {
+                row += face_clusters::ROWS as u32;
+            } else {
+                let count = head[3] as u32;
+                rows.extend(row + 1..=row + count);
+                row += 1 + count;
+            }
+        }
+        rows
+    }
+
     /// What a frame needs to know of the lights.
     pub fn summary(&self) -> LightSummary {
         LightSummary {
@@ -162,7 +182,7 @@ impl PackedLights {
         if shape.is_mesh() {
             radius = radius.max(shape.covering_radius(light.two_sided));
         }
-        self.push_outlines(shape, &offsets);
+        self.push_outlines(shape, &offsets, origin + center.as_dvec3());
         let vertex_count = self.vertices.len() as u32 - first_vertex;
         if let Some(map) = map {
             // The texture's axes keep their precision as the vertices do
@@ -193,10 +213,15 @@ impl PackedLights {
         Ok(())
     }
 
-    /// The rows of an outline, or of the faces of a mesh.
-    fn push_outlines(&mut self, shape: &LightShape, offsets: &[DVec3]) {
+    /// The rows of an outline, or of the faces of a mesh and their clusters, about `center`.
+    fn push_outlines(&mut self, shape: &LightShape, offsets: &[DVec3], center: DVec3) {
+        let clusters = shape.clusters().rows(shape.faces(), center);
+        let mut clusters = clusters.into_iter().peekable();
         let mut first = 0;
-        for face in shape.outlines() {
+        for (index, face) in shape.outlines().enumerate() {
+            while let Some((_, rows)) = clusters.next_if(|(face, _)| *face == index) {
+                self.vertices.extend(rows);
+            }
             let vertices = &offsets[first..first + face.len()];
             if shape.is_mesh() {
                 let normal = area_of(vertices).normalize_or_zero().as_vec3();
@@ -269,6 +294,7 @@ fn check_rows(lights: &[Light]) -> Result<(), LightError> {
     let mut count = 0;
     for (index, light) in lights.iter().enumerate() {
         count += light.shape.vertices().len() + light.shape.faces().len() + TEXTURE_ROWS;
+        count += light.shape.clusters().row_count();
         count += if light.is_shaped() { SHAPING_ROWS } else { 0 };
         if u32::try_from(count).is_err() {
             return Err(LightFault::TooManyVertices { count }.of(index, &light.name));

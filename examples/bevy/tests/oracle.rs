@@ -59,7 +59,7 @@ fn lights() -> Vec<(&'static str, AreaLight, Transform)> {
     let roof = [[-0.5, 0.0, 0.0], [-0.5, 1.0, 0.2], [0.5, 1.0, 0.2], [0.5, 0.0, 0.0]];
     let wall = [[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0], [0.5, -0.6, 0.5], [-0.5, -0.6, 0.5]];
     let vertices = roof.iter().chain(&wall).copied().map(DVec3::from_array).collect();
-    let mesh = LightShape::Mesh { vertices, faces: vec![4, 4] };
+    let mesh = LightShape::mesh(vertices, vec![4, 4]);
     let (p0, p1) = (DVec3::new(-0.8, 0.0, 0.0), DVec3::new(0.6, 0.2, 0.1));
     let tube = |ends| LightShape::Tube { p0, p1, radius: 0.1, ends };
     let spot = Profile::new(&[[0.0, 1.0], [30.0, 1.0], [70.0, 0.0]], 4).unwrap();

@@ -156,7 +156,11 @@ fn lights_that_cannot_be_shaded_are_named() {
         (ArealightLight { has_opening: 2, ..light() }, ErrorArgument, "lights[1].has_opening: 2"),
         (ArealightLight { opening_housed: 2, ..behind }, ErrorArgument, "lights[1].opening_housed: 2"),
         (ArealightLight { opening_axis_v: [0.0; 3], ..behind }, ErrorLight, "'lamp': opening: axis_u and"),
-        (ArealightLight { reserved: 7, ..light() }, ErrorArgument, "lights[1].reserved: 7 must be 0"),
+        (
+            ArealightLight { cluster_error: -1.0, ..light() },
+            ErrorArgument,
+            "lights[1].cluster_error: -1 is not",
+        ),
     ] {
         refused(pack(&[light(), wrong], &mut arrays), result, words);
     }
@@ -280,6 +284,17 @@ fn holes_and_faces_that_cannot_be_are_named() {
     };
     good(pack(&[cut, mesh(threes.as_ptr())], &mut arrays));
     assert_eq!((arrays.summary.light_count, arrays.summary.quad_count), (2, 0));
+    // Rows of clusters are among those of faces, four each
+    let many: Vec<f64> = (0..16).flat_map(|step| TRIANGLE.map(|number| number + f64::from(step))).collect();
+    let mut vertices = |cluster_error| {
+        let (vertices, counts) = (many.as_ptr(), [3; 16]);
+        let faces = mesh(counts.as_ptr());
+        let many = ArealightLight { vertices, vertex_count: 48, face_count: 16, cluster_error, ..faces };
+        good(pack(&[many], &mut arrays));
+        arrays.vertices_size
+    };
+    assert_eq!((vertices(0.0), (vertices(0.05) - 16 * 64) % 64), (16 * 64, 0));
+    assert!(vertices(0.05) > vertices(0.0));
 }
 
 /// A frame of this width, of eight rows and no light.

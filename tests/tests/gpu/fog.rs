@@ -158,7 +158,7 @@ fn what_is_all_around_gives_one_and_parts_give_the_whole() {
         let mut corner =
             |from: f64, to: f64| DVec3::from_array(std::array::from_fn(|_| random.between(from, to)));
         let faces = faces(corner(-3.0, -0.1), corner(0.1, 3.0));
-        let mut mesh = light(LightShape::Mesh { vertices: vec![], faces: vec![] });
+        let mut mesh = light(LightShape::mesh(vec![], vec![]));
         let mut points = vec![];
         for face in &faces {
             mesh.shape.add_face(face);

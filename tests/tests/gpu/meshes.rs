@@ -3,9 +3,11 @@
 
 use arealight_tests::Path;
 use arealight_tests::frame::black;
+use arealight_tests::globe::icosphere;
 use arealight_tests::lobe::{Lobe, Seen};
 use arealight_tests::prelude::*;
-use std::collections::HashMap;
+use glam::DAffine3;
+use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
@@ -148,44 +150,6 @@ fn cube(center: DVec3, half: f64) -> Light {
     light
 }
 
-/// A sphere of triangles whose vertices are on it: an icosahedron, each triangle split in four `times` times.
-fn icosphere(times: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
-    let mut corners = Vec::new();
-    for (a, b) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
-        corners.extend([DVec3::new(0.0, a, b), DVec3::new(a, b, 0.0), DVec3::new(b, 0.0, a)]);
-    }
-    let mut corners: Vec<DVec3> = corners.into_iter().map(DVec3::normalize_or_zero).collect();
-    // Three corners that are nearest to each other are a triangle
-    let near = |a: usize, b: usize| corners[a].dot(corners[b]) > 0.4;
-    let mut triangles = Vec::new();
-    for a in 0..12 {
-        for b in (a + 1..12).filter(|&b| near(a, b)) {
-            for c in (b + 1..12).filter(|&c| near(a, c) && near(b, c)) {
-                let outwards = corners[a].dot(corners[b].cross(corners[c])) > 0.0;
-                triangles.push(if outwards { [a, b, c] } else { [a, c, b] }.map(|corner| corner as u32));
-            }
-        }
-    }
-    for _ in 0..times {
-        let mut middles = HashMap::new();
-        let mut middle = |a: u32, b: u32| {
-            *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-                corners.push((corners[a as usize] + corners[b as usize]).normalize_or_zero());
-                corners.len() as u32 - 1
-            })
-        };
-        triangles = triangles
-            .into_iter()
-            .flat_map(|[a, b, c]| {
-                let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
-                [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
-            })
-            .collect();
-    }
-    (corners, triangles)
-}
-
 /// A mesh between two spheres sends no less than the inner one and no more than the outer one, before any
 /// lobe: so it is a sphere to the square of the two radii's ratio.
 #[test]
@@ -237,6 +201,81 @@ fn an_icosphere_is_a_sphere_to_the_error_of_its_faces() {
     }
     comparison.assert_all();
     assert!(outside > 32, "most send more than the sphere inside: {outside}");
+}
+
+/// The tube of `sides` sides about a bent line, closed, of triangles.
+fn bent_tube(sides: u32) -> LightShape {
+    let rings = 60;
+    let mut corners = Vec::new();
+    for ring in 0..rings {
+        let t = 0.05 * f64::from(ring);
+        let along = DVec3::new(-2.0 * (2.0 * t).sin(), 3.0 * (3.0 * t).cos(), 1.0).normalize_or_zero();
+        let (u, v) = along.any_orthonormal_pair();
+        let center = DVec3::new((2.0 * t).cos(), (3.0 * t).sin(), t - 1.5) * 0.5;
+        let turn = |side: u32| TAU * f64::from(side) / f64::from(sides);
+        corners.extend((0..sides).map(|side| center + (u * turn(side).cos() + v * turn(side).sin()) * 0.03));
+    }
+    let quads = (0..rings - 1).flat_map(|ring| {
+        (0..sides).flat_map(move |side| {
+            let next = (side + 1) % sides;
+            let [a, b] = [ring * sides + side, ring * sides + next];
+            [[a, b, b + sides], [a, b + sides, a + sides]]
+        })
+    });
+    LightShape::from_triangles(&corners, &quads.collect::<Vec<_>>()).expect("a tube")
+}
+
+/// What a mesh sends by clusters of an error and without, of random places and lobes: the worst and the mean
+/// of the relative errors, and how many points see no cluster.
+fn clustered_errors(engine: &TestEngine, shape: &LightShape, error: f64) -> (f64, f64, usize) {
+    let mut random = Random::new(405);
+    let (mut exact, mut clustered) = (Vec::new(), Vec::new());
+    let with_clusters = shape.clone().clustered(error);
+    for index in 0..512 {
+        let surface =
+            if index % 2 == 0 { lambert_surface() } else { glossy_surface(random.between(0.2, 1.0)) };
+        let direction = random.direction();
+        let place = direction.with_z(direction.z.abs()) * 10.0_f64.powf(random.between(0.1, 1.5));
+        let view = -direction.with_z(-direction.z.abs()) + random.direction() * 0.5;
+        let view = view.with_z(view.z.abs());
+        for (points, shape) in [(&mut exact, shape), (&mut clustered, &with_clusters)] {
+            let shape = shape.moved(&DAffine3::from_translation(place));
+            let light = Light { radiance: Vec3::ONE, shape, ..Light::default() };
+            points.push(EvalPoint { light, ..point(surface, view, Vec::new(), index % 4 < 2) });
+        }
+    }
+    // Far faces' own rounding is not what is asked for
+    let quality = Quality { form_factor: FormFactor::Difference, ..Quality::default() };
+    let [exact, clustered] = [exact, clustered].map(|points| engine.eval(&points, quality).expect("meshes"));
+    let errors = exact.iter().zip(&clustered).map(|(exact, found)| {
+        let [exact, found] = [exact, found].map(|radiance| f64::from(radiance.x));
+        (found - exact).abs() / exact.max(1e-6)
+    });
+    let errors: Vec<f64> = errors.collect();
+    let same = errors.iter().filter(|error| **error == 0.0).count();
+    (errors.iter().copied().fold(0.0, f64::max), errors.iter().sum::<f64>() / 512.0, same)
+}
+
+#[test]
+fn clusters_send_what_their_faces_do() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (corners, triangles) = icosphere(3);
+    let globe = LightShape::from_triangles(&corners, &triangles).expect("a mesh");
+    for (name, shape) in [("globe", globe), ("tube", bent_tube(8))] {
+        for error in [0.02, 0.05] {
+            let (worst, mean, same) = clustered_errors(&engine, &shape, error);
+            println!("{name}, {error}: worst {worst:.4}, mean {mean:.5}, {same} of 512 the same");
+            // The error is the root of a mean square over directions: a tube's end errs by more
+            assert!(
+                worst < 4.0 * error && mean < 0.2 * error && same < 128,
+                "{name}: {worst}, {mean}, {same}"
+            );
+        }
+        // The twins: clusters that may be anything, and none
+        let (worst, mean, _) = clustered_errors(&engine, &shape, 10.0);
+        assert!(worst > 0.05 && mean > 0.01, "{name}: {worst}, {mean}");
+        assert_eq!(clustered_errors(&engine, &shape, 0.0), (0.0, 0.0, 512));
+    }
 }
 
 /// What a scene's surfaces show of lights.

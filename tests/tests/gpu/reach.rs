@@ -28,7 +28,7 @@ fn lights() -> Vec<Light> {
         LightShape::Polygon(quad(1.0)),
         LightShape::Polygon(quad(-1.0)),
         LightShape::Polygon(bent),
-        LightShape::Mesh { vertices: mesh, faces },
+        LightShape::mesh(mesh, faces),
         LightShape::Disk { center: at, axis_u, axis_v },
         LightShape::Sphere { center: at, radius: 0.5 },
         LightShape::Tube { p0: at - DVec3::Y, p1: at + DVec3::Y, radius: 0.1, ends: TubeEnds::Round },
@@ -42,7 +42,7 @@ fn reflected(light: &Light, surface: &Surface, position: DVec3, normal: DVec3, v
     let table = &TABLE;
     let radiance = match &light.shape {
         LightShape::Polygon(_) => ltc(table, surface, normal, view, &RelativeLight::new(light, position)),
-        LightShape::Mesh { vertices, faces } => {
+        LightShape::Mesh { vertices, faces, .. } => {
             // Faces are lights of their own
             let mut rest = vertices.as_slice();
             faces.iter().fold(DVec3::ZERO, |sum, &count| {

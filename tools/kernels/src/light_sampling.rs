@@ -51,18 +51,6 @@ pub fn triangles_of(outline: &[DVec3]) -> Vec<u32> {
     indices
 }
 
-/// The row of each of a light's vertices among its rows: before each face of a mesh there is one more.
-fn vertex_rows(light: &Light) -> Vec<u32> {
-    let mut rows = Vec::with_capacity(light.shape.vertices().len());
-    let mut next = 0;
-    for outline in light.shape.outlines() {
-        next += u32::from(light.shape.is_mesh());
-        rows.extend(next..next + outline.len() as u32);
-        next += outline.len() as u32;
-    }
-    rows
-}
-
 impl LightSampling {
     /// Triangulates `lights`, which were packed as `packed`.
     pub fn new(lights: &[Light], packed: &PackedLights) -> Self {
@@ -72,7 +60,7 @@ impl LightSampling {
             let light = &*light.outlined();
             let first_triangle = sampling.triangles.len() as u32;
             let indices = triangles(light);
-            let rows = vertex_rows(light);
+            let rows = packed.vertex_rows(record);
             let areas = indices.chunks_exact(3).map(|triangle| {
                 let [a, b, c] = [0, 1, 2].map(|corner| light.shape.vertices()[triangle[corner] as usize]);
                 (b - a).cross(c - a).length() * 0.5
@@ -82,7 +70,7 @@ impl LightSampling {
             for (triangle, area) in indices.chunks_exact(3).zip(areas) {
                 before += area;
                 sampling.triangles.push(GpuLightTriangle {
-                    vertices: [0, 1, 2].map(|corner| record.first_vertex + rows[triangle[corner] as usize]),
+                    vertices: [0, 1, 2].map(|corner| rows[triangle[corner] as usize]),
                     cumulative: (before / total) as f32,
                 });
             }

@@ -102,7 +102,7 @@ fn layouts() -> [Layout; 27] {
             texture_coordinates, hole_vertex_counts, face_vertex_counts, hole_count, face_count, center,
             axis_u, axis_v, radius, ends, profile_row_count, profile_azimuth_count, links,
             profile, profile_levels, has_opening,
-            opening_center, opening_axis_u, opening_axis_v, opening_housed, reserved,
+            opening_center, opening_axis_u, opening_axis_v, opening_housed, cluster_error,
         }
         ArealightReach { center, radius, low, high }
         ArealightLightSummary { light_count, quad_count, shape_count, effects }

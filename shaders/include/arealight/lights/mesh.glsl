@@ -1,11 +1,8 @@
 #ifndef AREALIGHT_MESH_LIGHT_GLSL
 #define AREALIGHT_MESH_LIGHT_GLSL
 
+#include "arealight/lights/face_cluster.glsl"
 #include "arealight/lights/polygon.glsl"
-
-// The host's bridge to the faces of meshes: at the index before those of a face's vertices, the unit normal
-// of its front in xyz, and in w how many vertices it has.
-vec4 arealight_bridge_face(uint index);
 
 // Flat, simple polygons, one after another, of one constant radiance. The sum is of what each emits: where
 // one hides another, both count.
@@ -44,28 +41,43 @@ struct ArealightMeshFace {
     float side; // arealight_lit_side
 };
 
-// The face of a row.
-ArealightMeshFace arealight_mesh_face(ArealightLocalMesh local, uint row) {
+// The face of a row, and the row after it.
+ArealightMeshFace arealight_mesh_face(ArealightLocalMesh local, inout uint row) {
     vec4 face = arealight_bridge_face(row);
     uint first = row + 1u;
     uint end = first + clamp(uint(face.w), 1u, local.end - first);
     vec3 offset = local.offset + arealight_bridge_vertex(first);
-    float side = arealight_lit_side(offset, face.xyz, local.two_sided, local.error);
-    return ArealightMeshFace(first, end, side);
+    row = end;
+    return ArealightMeshFace(first, end, arealight_lit_side(offset, face.xyz, local.two_sided, local.error));
 }
 
-// Each face is clipped and closed by itself, if the point is on its bright side.
+// Each face is clipped and closed by itself, if the point is on its bright side; clusters that are one from
+// there are not looked into.
 vec3 arealight_vector_form_factor(mat3 space, ArealightLocalMesh local) {
     vec3 center = local.to_frame * local.offset;
+    ArealightSpaceSize size = arealight_space_size(space);
     vec3 sum = vec3(0.0);
     for (uint row = local.first; row + 1u < local.end;) {
-        ArealightMeshFace face = arealight_mesh_face(local, row);
-        if (face.side != 0.0) {
-            // Seen from the back an outline goes around the other way
-            sum += face.side * arealight_outline_form_factor(space, center, local.to_frame, face.first,
-                                                             face.end, face.side);
+        vec4 head = arealight_bridge_face(row);
+        if (head.w < 0.0) {
+            vec3 to_center = local.offset + head.xyz;
+            vec3 in_frame = local.to_frame * to_center;
+            vec3 in_space = space * in_frame;
+            float over = in_space.z * size.lower;
+            over = AREALIGHT_CLIPS_AT_SURFACE ? min(over, in_frame.z) : over;
+            int choice = arealight_cluster_choice(row, in_space, size, over);
+            if (choice == AREALIGHT_CLUSTER_WHOLE) {
+                sum += arealight_cluster_form_factor(row, to_center, in_space, size, local.two_sided);
+            }
+            row = arealight_after_cluster(row, local.end, head, choice);
+        } else {
+            ArealightMeshFace face = arealight_mesh_face(local, row);
+            if (face.side != 0.0) {
+                // Seen from the back an outline goes around the other way
+                sum += face.side * arealight_outline_form_factor(space, center, local.to_frame, face.first,
+                                                                 face.end, face.side);
+            }
         }
-        row = face.end;
     }
     return sum;
 }
@@ -74,15 +86,20 @@ bool arealight_has_facet_form_factor(ArealightLocalMesh local) {
     return true;
 }
 
+// Face by face: clusters are looked into.
 vec3 arealight_facet_form_factor(ArealightFacets facets, ArealightLocalMesh local) {
     vec3 center = local.to_frame * local.offset;
     vec3 sum = vec3(0.0);
     for (uint row = local.first; row + 1u < local.end;) {
-        ArealightMeshFace face = arealight_mesh_face(local, row);
-        if (face.side != 0.0) {
-            sum += face.side * arealight_facet_outline(facets, center, local.to_frame, face.first, face.end);
+        if (arealight_bridge_face(row).w < 0.0) {
+            row += AREALIGHT_CLUSTER_ROWS;
+        } else {
+            ArealightMeshFace face = arealight_mesh_face(local, row);
+            if (face.side != 0.0) {
+                sum += face.side
+                       * arealight_facet_outline(facets, center, local.to_frame, face.first, face.end);
+            }
         }
-        row = face.end;
     }
     return sum;
 }
@@ -96,11 +113,14 @@ float arealight_solid_angle(ArealightLocalMesh local) {
     vec3 center = local.to_frame * local.offset;
     float sum = 0.0;
     for (uint row = local.first; row + 1u < local.end;) {
-        ArealightMeshFace face = arealight_mesh_face(local, row);
-        if (face.side != 0.0) {
-            sum += arealight_outline_solid_angle(center, local.to_frame, face.first, face.end);
+        if (arealight_bridge_face(row).w < 0.0) {
+            row += AREALIGHT_CLUSTER_ROWS;
+        } else {
+            ArealightMeshFace face = arealight_mesh_face(local, row);
+            if (face.side != 0.0) {
+                sum += arealight_outline_solid_angle(center, local.to_frame, face.first, face.end);
+            }
         }
-        row = face.end;
     }
     return min(sum, 4.0 * AREALIGHT_PI);
 }

@@ -147,7 +147,7 @@ mod tests {
     const SETS: [(&str, usize); 9] = [
         ("diffuse,glossy", 79_000),
         ("diffuse,glossy,polygon,two_sided", 103_000),
-        ("diffuse,glossy,polygon,mesh,textured", 124_000),
+        ("diffuse,glossy,polygon,mesh,textured", 144_000),
         ("diffuse,glossy,ellipse,sphere,tube", 205_000),
         ("diffuse,glossy,ellipse,textured_ellipse", 149_000),
         ("diffuse,glossy,coat,coat_normal", 86_000),
