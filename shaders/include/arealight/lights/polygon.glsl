@@ -51,18 +51,16 @@ bool arealight_to_local(ArealightPoint point, ArealightPolygonLight light, out A
 }
 
 // The vector form factor of the outline of vertices `first` to `end` - 1, not empty, in a space, clipped at
-// its horizon. Here and below an outline begins at its last vertex and ends at that very one: computed in two
-// places, a compiler may round it to either side of a horizon, which leaves a gap.
+// its horizon.
 vec3 arealight_outline_in_space(mat3 space, vec3 center, mat3 to_frame, uint first, uint end, float front) {
     vec3 in_space = space * center;
     mat3 to_space = space * to_frame;
     ArealightOutline outline = arealight_outline_begin();
-    vec3 last = arealight_unit(in_space + to_space * arealight_bridge_vertex(end - 1u));
-    vec3 from = last;
+    vec3 from = arealight_unit(in_space + to_space * arealight_bridge_vertex(end - 1u));
     float heights = 0.0;
     for (uint index = first; index < end; index++) {
         vec3 vertex = in_space + to_space * arealight_bridge_vertex(index);
-        vec3 to = index + 1u == end ? last : arealight_unit(vertex);
+        vec3 to = arealight_unit(vertex);
         arealight_outline_edge(outline, from, to);
         heights += vertex.z;
         from = to;
@@ -74,11 +72,11 @@ vec3 arealight_outline_in_space(mat3 space, vec3 center, mat3 to_frame, uint fir
 // The same, clipped at the surface's horizon first.
 vec3 arealight_outline_above_surface(mat3 space, vec3 center, mat3 to_frame, uint first, uint end,
                                      float front) {
-    vec3 last = center + to_frame * arealight_bridge_vertex(end - 1u);
-    ArealightClippedOutline clipped = arealight_clipped_begin(last);
+    ArealightClippedOutline clipped = arealight_clipped_begin(center + to_frame
+                                                              * arealight_bridge_vertex(end - 1u));
     float heights = 0.0;
     for (uint index = first; index < end; index++) {
-        vec3 vertex = index + 1u == end ? last : center + to_frame * arealight_bridge_vertex(index);
+        vec3 vertex = center + to_frame * arealight_bridge_vertex(index);
         arealight_clipped_vertex(clipped, space, vertex);
         heights += vertex.z;
     }
@@ -142,11 +140,11 @@ vec3 arealight_facet_outline_in_axes(ArealightFacets facets, vec3 center, mat3 t
                                      uint end) {
     vec3 in_axes = facets.to_axes * center;
     mat3 to_axes = facets.to_axes * to_frame;
-    vec3 last = in_axes + to_axes * arealight_bridge_vertex(end - 1u);
-    ArealightFacetOutline outline = arealight_facet_begin(last);
+    ArealightFacetOutline outline = arealight_facet_begin(in_axes + to_axes
+                                                          * arealight_bridge_vertex(end - 1u));
     float heights = 0.0;
     for (uint index = first; index < end; index++) {
-        vec3 vertex = index + 1u == end ? last : in_axes + to_axes * arealight_bridge_vertex(index);
+        vec3 vertex = in_axes + to_axes * arealight_bridge_vertex(index);
         arealight_facet_vertex(outline, facets, vertex);
         heights += vertex.z;
     }
@@ -157,11 +155,10 @@ vec3 arealight_facet_outline_in_axes(ArealightFacets facets, vec3 center, mat3 t
 vec3 arealight_facet_outline_above_surface(ArealightFacets facets, vec3 center, mat3 to_frame, uint first,
                                            uint end) {
     ArealightFacetLoop outline = arealight_facet_loop();
-    vec3 last = center + to_frame * arealight_bridge_vertex(end - 1u);
-    vec3 previous = last;
+    vec3 previous = center + to_frame * arealight_bridge_vertex(end - 1u);
     float heights = 0.0;
     for (uint index = first; index < end; index++) {
-        vec3 vertex = index + 1u == end ? last : center + to_frame * arealight_bridge_vertex(index);
+        vec3 vertex = center + to_frame * arealight_bridge_vertex(index);
         bool is_above = vertex.z > 0.0;
         if (is_above != (previous.z > 0.0)) {
             vec3 cut = is_above ? arealight_cut(vertex, previous) : arealight_cut(previous, vertex);
