@@ -41,7 +41,8 @@ pub(crate) struct Cluster {
     pub first: usize,
     pub end: usize,
     center: DVec3,
-    /// The sum of the area vectors.
+    /// The sum of the areas, and of the area vectors.
+    area: f64,
     vector: DVec3,
     /// Of the sum of what both sides show.
     form: DMat3,
@@ -81,12 +82,13 @@ impl Cluster {
     /// Its rows, relative to `origin`, where `rows` is how many it and its faces have.
     pub fn rows(&self, origin: DVec3, rows: usize) -> [[f32; 4]; ROWS] {
         let row = |vector: DVec3, number: f64| vector.as_vec3().extend(number as f32).to_array();
-        let form = self.form;
+        // Of area 1, so that float32 holds its square for lights of any size
+        let form = self.form * (1.0 / self.area.powi(2));
         [
             row(self.center - origin, -(rows as f64)),
-            row(self.vector, self.distance),
+            row(self.vector / self.area, self.distance),
             row(DVec3::new(form.x_axis.x, form.y_axis.y, form.z_axis.z), self.radius),
-            row(2.0 * DVec3::new(form.x_axis.y, form.x_axis.z, form.y_axis.z), 0.0),
+            row(2.0 * DVec3::new(form.x_axis.y, form.x_axis.z, form.y_axis.z), self.area),
         ]
     }
 }
@@ -340,6 +342,7 @@ impl Builder<'_> {
             first,
             end: first + order.len(),
             center,
+            area: sums.area,
             vector: sums.vector,
             form,
             radius,

@@ -225,9 +225,9 @@ fn bent_tube(sides: u32) -> LightShape {
     LightShape::from_triangles(&corners, &quads.collect::<Vec<_>>()).expect("a tube")
 }
 
-/// What a mesh sends by clusters of an error and without, of random places and lobes: the worst and the mean
-/// of the relative errors, and how many points see no cluster.
-fn clustered_errors(engine: &TestEngine, shape: &LightShape, error: f64) -> (f64, f64, usize) {
+/// What a mesh sends by clusters of an error and without, of random places and lobes in a unit of length: the
+/// worst and the mean of the relative errors, and how many points see no cluster.
+fn clustered_errors(engine: &TestEngine, shape: &LightShape, error: f64, unit: f64) -> (f64, f64, usize) {
     let mut random = Random::new(405);
     let (mut exact, mut clustered) = (Vec::new(), Vec::new());
     let with_clusters = shape.clone().clustered(error);
@@ -239,7 +239,8 @@ fn clustered_errors(engine: &TestEngine, shape: &LightShape, error: f64) -> (f64
         let view = -direction.with_z(-direction.z.abs()) + random.direction() * 0.5;
         let view = view.with_z(view.z.abs());
         for (points, shape) in [(&mut exact, shape), (&mut clustered, &with_clusters)] {
-            let shape = shape.moved(&DAffine3::from_translation(place));
+            let shape =
+                shape.moved(&(DAffine3::from_scale(DVec3::splat(unit)) * DAffine3::from_translation(place)));
             let light = Light { radiance: Vec3::ONE, shape, ..Light::default() };
             points.push(EvalPoint { light, ..point(surface, view, Vec::new(), index % 4 < 2) });
         }
@@ -262,8 +263,8 @@ fn clusters_send_what_their_faces_do() {
     let (corners, triangles) = icosphere(3);
     let globe = LightShape::from_triangles(&corners, &triangles).expect("a mesh");
     for (name, shape) in [("globe", globe), ("tube", bent_tube(8))] {
-        for error in [0.02, 0.05] {
-            let (worst, mean, same) = clustered_errors(&engine, &shape, error);
+        for (error, unit) in [(0.02, 1.0), (0.05, 1.0), (0.05, 1e-12), (0.05, 1e12)] {
+            let (worst, mean, same) = clustered_errors(&engine, &shape, error, unit);
             println!("{name}, {error}: worst {worst:.4}, mean {mean:.5}, {same} of 512 the same");
             // The error is the root of a mean square over directions: a tube's end errs by more
             assert!(
@@ -272,9 +273,9 @@ fn clusters_send_what_their_faces_do() {
             );
         }
         // The twins: clusters that may be anything, and none
-        let (worst, mean, _) = clustered_errors(&engine, &shape, 10.0);
+        let (worst, mean, _) = clustered_errors(&engine, &shape, 10.0, 1.0);
         assert!(worst > 0.05 && mean > 0.01, "{name}: {worst}, {mean}");
-        assert_eq!(clustered_errors(&engine, &shape, 0.0), (0.0, 0.0, 512));
+        assert_eq!(clustered_errors(&engine, &shape, 0.0, 1.0), (0.0, 0.0, 512));
     }
 }
 

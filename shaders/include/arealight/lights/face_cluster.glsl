@@ -7,8 +7,9 @@
 
 // The host's bridge to the rows of meshes. A face's: the unit normal of its front in xyz, and in w how many
 // vertices it has, whose rows follow. A cluster's, four before those of its faces and of the clusters within:
-// its center and minus how many rows it has, these four with them; the sum of its area vectors, and how far
-// away it serves; the diagonal of its form, and its radius; twice the form's xy, xz and yz.
+// its center and minus how many rows it has, these four with them; the sum of its area vectors over its area,
+// and how far away it serves; the diagonal of its form, of area 1, and its radius; twice the form's xy, xz
+// and yz, and its area.
 vec4 arealight_bridge_face(uint index);
 
 const uint AREALIGHT_CLUSTER_ROWS = 4u;
@@ -29,13 +30,12 @@ ArealightSpaceSize arealight_space_size(mat3 space) {
                               abs(determinant(space)) / AREALIGHT_PI);
 }
 
-// The area that a cluster shows along the vector from the point to its center, times that vector's length.
-float arealight_cluster_area(uint row, vec3 to_center, bool two_sided) {
+// What part of its area a cluster shows along the vector from the point to its center, times that vector's
+// length.
+float arealight_cluster_shown(uint row, vec3 products, vec3 to_center, bool two_sided) {
     vec3 vector = arealight_bridge_face(row + 1u).xyz;
     vec3 squares = arealight_bridge_face(row + 2u).xyz;
-    vec3 products = arealight_bridge_face(row + 3u).xyz;
-    float form = dot(squares, to_center * to_center)
-                 + dot(products, to_center.xxy * to_center.yzz);
+    float form = dot(squares, to_center * to_center) + dot(products, to_center.xxy * to_center.yzz);
     float both = sqrt(max(form, 0.0));
     return max(two_sided ? both : 0.5 * (both - dot(vector, to_center)), 0.0);
 }
@@ -67,8 +67,9 @@ uint arealight_after_cluster(uint row, uint end, vec4 head, int choice) {
 vec3 arealight_cluster_form_factor(uint row, vec3 to_center, vec3 in_space, ArealightSpaceSize size,
                                    bool two_sided) {
     float inverse = inversesqrt(max(dot(in_space, in_space), AREALIGHT_LEAST_SQUARE));
-    float area = arealight_cluster_area(row, to_center, two_sided);
-    vec3 vector = (area * inverse * inverse) * (size.volume * inverse) * (in_space * inverse);
+    vec4 products = arealight_bridge_face(row + 3u);
+    float shown = arealight_cluster_shown(row, products.xyz, to_center, two_sided);
+    vec3 vector = (shown * inverse) * (products.w * inverse * inverse * size.volume) * (in_space * inverse);
     return arealight_is_finite(dot(vector, vector)) ? vector : vec3(0.0);
 }
 
