@@ -49,11 +49,10 @@ const int AREALIGHT_CLUSTER_WHOLE = 2;  // it is one
 int arealight_cluster_choice(uint row, vec3 in_space, ArealightSpaceSize size, float over) {
     float radius = arealight_bridge_face(row + 2u).w;
     float distance = arealight_bridge_face(row + 1u).w;
-    if (over <= -radius) {
-        return AREALIGHT_CLUSTER_BELOW;
-    }
     bool apart = dot(in_space, in_space) > distance * distance * size.stretch;
-    return apart && over >= radius ? AREALIGHT_CLUSTER_WHOLE : AREALIGHT_CLUSTER_OPEN;
+    int choice = apart && over >= radius ? AREALIGHT_CLUSTER_WHOLE : AREALIGHT_CLUSTER_OPEN;
+    // By one return: where there are two, naga loses the place of the rows read before them
+    return over <= -radius ? AREALIGHT_CLUSTER_BELOW : choice;
 }
 
 // The row after it, or the first one in it; at most `end`.
