@@ -69,7 +69,7 @@ run_tests() {
 # numbers, are left out, and hosts in C: other tests make the same kernels read and write the same buffers. Pushed
 # descriptors are left out since the layer binds a set of its own, after which this version of it (1.3.239) has
 # lost what was pushed.
-batteries='arcs|bits|c_api|c_pictures|c_shadows|cpp_host|effects|footprints|furnace|guard|half_vectors|huge_lights|lobe_horizons'
+batteries='arcs|bits|c_api|c_lights|c_pictures|c_shadows|cpp_host|effects|footprints|furnace|guard|half_vectors|huge_lights|lobe_horizons'
 batteries+='|masked_shadows|material_frames|meshes|paths|polygon_sampling|properties|prune|quad_path|reach|rescattered|self_test'
 batteries+='|shading|shadow_levels|shadow_motion|shadowed_reference|shape_frames|shape_lights|shape_points'
 batteries+='|shape_properties|shapes|slim_tubes|stability|surfaces|sweep|textured_disks|thin_film|tubes'

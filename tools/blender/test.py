@@ -141,7 +141,8 @@ def cycles(name):
 def arealight(scene, name, *options):
     path = FOLDER / f"{name}.exr"
     subprocess.run(
-        [AREALIGHT, "render", str(scene), "--size", "x".join(map(str, SIZE)), "--shadows", "off"] + ["-o", str(path), *options],
+        [AREALIGHT, "render", str(scene), "--size", "x".join(map(str, SIZE)), "--shadows", "off", *options]
+        + ["-o", str(path)],
         check=True,
         capture_output=True,
     )

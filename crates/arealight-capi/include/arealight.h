@@ -486,7 +486,7 @@ typedef struct ArealightLight {
     // as outside of a window.
     uint32_t opening_housed;
     // Of a mesh: 0, or how much of what far faces show on average clusters of them may be off by, .05 say.
-    // What they send then takes time by what is seen of them. Ten thousand faces take a fifteenth of a
+    // What they send then takes time by what is seen of them. Ten thousand faces take a fortieth of a
     // second to pack: keep them packed.
     float cluster_error;
 } ArealightLight;

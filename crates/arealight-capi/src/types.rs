@@ -257,7 +257,7 @@ pub struct ArealightLight {
     /// as outside of a window.
     pub opening_housed: u32,
     /// Of a mesh: 0, or how much of what far faces show on average clusters of them may be off by, .05 say.
-    /// What they send then takes time by what is seen of them. Ten thousand faces take a fifteenth of a
+    /// What they send then takes time by what is seen of them. Ten thousand faces take a fortieth of a
     /// second to pack: keep them packed.
     pub cluster_error: f32,
 }

@@ -40,6 +40,8 @@ pub struct FaceClusters {
 pub(crate) struct Cluster {
     pub first: usize,
     pub end: usize,
+    /// How many rows it has, with those of its faces and of the clusters in it.
+    rows: usize,
     center: DVec3,
     /// The sum of the areas, and of the area vectors.
     area: f64,
@@ -58,34 +60,24 @@ impl FaceClusters {
         self.clusters.len() * ROWS
     }
 
-    /// Their rows about `origin`, each cluster's with the index of its first face. `faces` are how many
-    /// vertices each face has; clusters of other faces are none.
-    pub(crate) fn rows(&self, faces: &[u32], origin: DVec3) -> Vec<(usize, [[f32; 4]; ROWS])> {
-        if self.clusters.iter().any(|cluster| cluster.end > faces.len()) {
+    /// Their rows about `origin`, each cluster's with the index of its first face. None where there are fewer
+    /// `faces` than they are of.
+    pub(crate) fn rows(&self, faces: usize, origin: DVec3) -> Vec<(usize, [[f32; 4]; ROWS])> {
+        if self.clusters.iter().any(|cluster| cluster.end > faces) {
             return vec![];
         }
-        // Rows of the faces before each
-        let mut before = vec![0];
-        for count in faces {
-            before.push(before[before.len() - 1] + *count as usize + 1);
-        }
-        let rows = self.clusters.iter().enumerate().map(|(index, cluster)| {
-            let parts = self.clusters[index..].iter().take_while(|part| part.end <= cluster.end).count();
-            let count = before[cluster.end] - before[cluster.first] + ROWS * parts;
-            (cluster.first, cluster.rows(origin, count))
-        });
-        rows.collect()
+        self.clusters.iter().map(|cluster| (cluster.first, cluster.rows(origin))).collect()
     }
 }
 
 impl Cluster {
-    /// Its rows, relative to `origin`, where `rows` is how many it and its faces have.
-    pub fn rows(&self, origin: DVec3, rows: usize) -> [[f32; 4]; ROWS] {
+    /// Its own rows, relative to `origin`.
+    fn rows(&self, origin: DVec3) -> [[f32; 4]; ROWS] {
         let row = |vector: DVec3, number: f64| vector.as_vec3().extend(number as f32).to_array();
         // Of area 1, so that float32 holds its square for lights of any size
         let form = self.form * (1.0 / self.area.powi(2));
         [
-            row(self.center - origin, -(rows as f64)),
+            row(self.center - origin, -(self.rows as f64)),
             row(self.vector / self.area, self.distance),
             row(DVec3::new(form.x_axis.x, form.y_axis.y, form.z_axis.z), self.radius),
             row(2.0 * DVec3::new(form.x_axis.y, form.x_axis.z, form.y_axis.z), self.area),
@@ -132,8 +124,6 @@ struct Face {
     middle: DVec3,
     /// The mean of `x x^T` over it.
     squares: DMat3,
-    /// What faces are sorted by: places, and normals on their scale.
-    key: [DVec3; 2],
 }
 
 impl Face {
@@ -150,10 +140,9 @@ impl Face {
             squares += parts * (part / 12.0);
         }
         if area > 0.0 {
-            Self { vector, middle: middle / area, squares: squares * (1.0 / area), key: [DVec3::ZERO; 2] }
+            Self { vector, middle: middle / area, squares: squares * (1.0 / area) }
         } else {
-            let (middle, squares) = (outline[0], square(outline[0]));
-            Self { vector: DVec3::ZERO, middle, squares, key: [DVec3::ZERO; 2] }
+            Self { vector: DVec3::ZERO, middle: outline[0], squares: square(outline[0]) }
         }
     }
 }
@@ -265,6 +254,7 @@ impl Sums {
 }
 
 /// Some faces, and how they split.
+#[derive(Default)]
 struct Node {
     parts: Option<[usize; 2]>,
     cluster: Option<Cluster>,
@@ -273,15 +263,13 @@ struct Node {
 /// Sorts faces so that near ones lie together, and finds clusters of them: the order of the faces, and the
 /// clusters.
 pub(crate) fn clustered(outlines: &[Outline], error: f64) -> (Vec<usize>, FaceClusters) {
-    let mut faces: Vec<Face> = outlines.iter().map(|outline| Face::new(*outline)).collect();
+    let faces: Vec<Face> = outlines.iter().map(|outline| Face::new(*outline)).collect();
     let [low, high] = faces.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], face| {
         [low.min(face.middle), high.max(face.middle)]
     });
     let turn = 0.5 * TURN * (high - low).max_element();
-    for face in &mut faces {
-        face.key = [face.middle, face.vector.normalize_or_zero() * turn];
-    }
-    let mut builder = Builder { outlines, faces, error, nodes: vec![] };
+    let keys = faces.iter().map(|face| [face.middle, face.vector.normalize_or_zero() * turn]).collect();
+    let mut builder = Builder { outlines, faces, keys, error, nodes: vec![] };
     let mut order: Vec<usize> = (0..outlines.len()).collect();
     let mut clusters = FaceClusters { error, clusters: vec![] };
     if !order.is_empty() {
@@ -294,6 +282,8 @@ pub(crate) fn clustered(outlines: &[Outline], error: f64) -> (Vec<usize>, FaceCl
 struct Builder<'a> {
     outlines: &'a [Outline<'a>],
     faces: Vec<Face>,
+    /// What faces are sorted by: places, and normals on their scale.
+    keys: Vec<[DVec3; 2]>,
     error: f64,
     nodes: Vec<Node>,
 }
@@ -317,7 +307,7 @@ impl Builder<'_> {
 
     /// Sorts faces by halves along the widest axis, of places or normals; how many are in the first.
     fn split(&self, order: &mut [usize]) -> usize {
-        let along = |axis: usize, face: usize| self.faces[face].key[axis / 3][axis % 3];
+        let along = |axis: usize, face: usize| self.keys[face][axis / 3][axis % 3];
         let extent = |axis: usize| {
             let ends = order.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &face| {
                 [low.min(along(axis, face)), high.max(along(axis, face))]
@@ -341,6 +331,7 @@ impl Builder<'_> {
         (distance.is_finite() && radius > 0.0).then_some(Cluster {
             first,
             end: first + order.len(),
+            rows: order.iter().map(|face| 1 + self.outlines[*face].0.len()).sum(),
             center,
             area: sums.area,
             vector: sums.vector,
@@ -351,15 +342,17 @@ impl Builder<'_> {
     }
 
     /// Adds the clusters of a node that serve from nearer than `distance`, each before its parts.
-    fn collect(&self, node: usize, distance: f64, clusters: &mut Vec<Cluster>) {
-        let node = &self.nodes[node];
-        let mut least = distance;
-        if let Some(cluster) = node.cluster.as_ref().filter(|cluster| cluster.distance < CLOSER * distance) {
-            least = cluster.distance;
-            clusters.push(cluster.clone());
-        }
-        for part in node.parts.into_iter().flatten() {
+    fn collect(&mut self, node: usize, distance: f64, clusters: &mut Vec<Cluster>) {
+        let Node { parts, cluster } = std::mem::take(&mut self.nodes[node]);
+        let cluster = cluster.filter(|cluster| cluster.distance < CLOSER * distance);
+        let (place, least) = (clusters.len(), cluster.as_ref().map_or(distance, |cluster| cluster.distance));
+        let serves = cluster.is_some();
+        clusters.extend(cluster);
+        for part in parts.into_iter().flatten() {
             self.collect(part, least, clusters);
+        }
+        if serves {
+            clusters[place].rows += ROWS * (clusters.len() - place);
         }
     }
 }

@@ -146,10 +146,8 @@ impl LightShape {
                 *radius *= (volume.abs() / longer).sqrt();
             }
         }
-        match shape.clusters().error {
-            0.0 => shape,
-            error => shape.clustered(error),
-        }
+        let error = shape.clusters().error;
+        shape.clustered(error)
     }
 
     /// Whether it is a polygon or a mesh.

@@ -75,7 +75,7 @@ impl LightShape {
     /// of a mean square over directions. What the mesh sends errs by about a tenth of that, .05 say
     /// (docs/shapes.md). Half vectors look at each face.
     ///
-    /// Ten thousand faces take a thirtieth of a second: make them once, not in each frame. Other shapes stay
+    /// Ten thousand faces take a fortieth of a second: make them once, not in each frame. Other shapes stay
     /// as they are, and so do all with an error of 0.
     #[must_use]
     pub fn clustered(self, error: f64) -> Self {

@@ -215,7 +215,7 @@ impl PackedLights {
 
     /// The rows of an outline, or of the faces of a mesh and their clusters, about `center`.
     fn push_outlines(&mut self, shape: &LightShape, offsets: &[DVec3], center: DVec3) {
-        let clusters = shape.clusters().rows(shape.faces(), center);
+        let clusters = shape.clusters().rows(shape.faces().len(), center);
         let mut clusters = clusters.into_iter().peekable();
         let mut first = 0;
         for (index, face) in shape.outlines().enumerate() {

@@ -9,6 +9,7 @@ mod area_lights;
 mod bits;
 mod blockers;
 mod c_api;
+mod c_lights;
 mod c_pictures;
 mod c_shadows;
 mod coat;

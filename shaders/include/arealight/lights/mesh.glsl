@@ -41,14 +41,16 @@ struct ArealightMeshFace {
     float side; // arealight_lit_side
 };
 
-// The face of a row, and the row after it.
-ArealightMeshFace arealight_mesh_face(ArealightLocalMesh local, inout uint row) {
+// The face of a row. The rows of a cluster are a face of no side: so all that is in it is looked at.
+ArealightMeshFace arealight_mesh_face(ArealightLocalMesh local, uint row) {
     vec4 face = arealight_bridge_face(row);
+    bool is_cluster = face.w < 0.0;
     uint first = row + 1u;
-    uint end = first + clamp(uint(face.w), 1u, local.end - first);
+    uint count = is_cluster ? AREALIGHT_CLUSTER_ROWS - 1u : uint(face.w);
+    uint end = first + clamp(count, 1u, local.end - first);
     vec3 offset = local.offset + arealight_bridge_vertex(first);
-    row = end;
-    return ArealightMeshFace(first, end, arealight_lit_side(offset, face.xyz, local.two_sided, local.error));
+    float side = is_cluster ? 0.0 : arealight_lit_side(offset, face.xyz, local.two_sided, local.error);
+    return ArealightMeshFace(first, end, side);
 }
 
 // Each face is clipped and closed by itself, if the point is on its bright side; clusters that are one from
@@ -77,6 +79,7 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalMesh local) {
                 sum += face.side * arealight_outline_form_factor(space, center, local.to_frame, face.first,
                                                                  face.end, face.side);
             }
+            row = face.end;
         }
     }
     return sum;
@@ -86,20 +89,16 @@ bool arealight_has_facet_form_factor(ArealightLocalMesh local) {
     return true;
 }
 
-// Face by face: clusters are looked into.
+// Face by face.
 vec3 arealight_facet_form_factor(ArealightFacets facets, ArealightLocalMesh local) {
     vec3 center = local.to_frame * local.offset;
     vec3 sum = vec3(0.0);
     for (uint row = local.first; row + 1u < local.end;) {
-        if (arealight_bridge_face(row).w < 0.0) {
-            row += AREALIGHT_CLUSTER_ROWS;
-        } else {
-            ArealightMeshFace face = arealight_mesh_face(local, row);
-            if (face.side != 0.0) {
-                sum += face.side
-                       * arealight_facet_outline(facets, center, local.to_frame, face.first, face.end);
-            }
+        ArealightMeshFace face = arealight_mesh_face(local, row);
+        if (face.side != 0.0) {
+            sum += face.side * arealight_facet_outline(facets, center, local.to_frame, face.first, face.end);
         }
+        row = face.end;
     }
     return sum;
 }
@@ -113,14 +112,11 @@ float arealight_solid_angle(ArealightLocalMesh local) {
     vec3 center = local.to_frame * local.offset;
     float sum = 0.0;
     for (uint row = local.first; row + 1u < local.end;) {
-        if (arealight_bridge_face(row).w < 0.0) {
-            row += AREALIGHT_CLUSTER_ROWS;
-        } else {
-            ArealightMeshFace face = arealight_mesh_face(local, row);
-            if (face.side != 0.0) {
-                sum += arealight_outline_solid_angle(center, local.to_frame, face.first, face.end);
-            }
+        ArealightMeshFace face = arealight_mesh_face(local, row);
+        if (face.side != 0.0) {
+            sum += arealight_outline_solid_angle(center, local.to_frame, face.first, face.end);
         }
+        row = face.end;
     }
     return min(sum, 4.0 * AREALIGHT_PI);
 }

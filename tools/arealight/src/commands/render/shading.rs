@@ -129,7 +129,7 @@ pub fn render(
     let mut emission = vec![];
     let fog = arguments.fog.of(scene, camera);
     let most_stops = most_stops(scene);
-    // A film's shadows have a history; not in bands, each of which would need a buffer of its own
+    // A film's shadows go on from the frame before. A picture in bands would need a history a band
     let has_history = arguments.film.frames.is_some() && arguments.shadow_noise.is_none() && bands.len() == 1;
     let history = if has_history { ShadowHistory::Camera } else { ShadowHistory::Off };
     let first_seed = arguments.seed.wrapping_add(frame.index);
