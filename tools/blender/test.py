@@ -13,6 +13,7 @@ from pathlib import Path
 
 import bpy
 import numpy
+import truth
 
 import addon_utils  # bpy puts it on the path
 
@@ -125,17 +126,9 @@ def pixels(path):
 
 
 def cycles(name):
-    scene = bpy.context.scene
-    scene.render.engine = "CYCLES"
-    scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.max_bounces = 256, False, 0
-    scene.cycles.sample_clamp_direct = 0.0
-    scene.render.resolution_x, scene.render.resolution_y = SIZE
-    scene.render.resolution_percentage = 100
-    scene.render.image_settings.file_format = "OPEN_EXR"
-    scene.render.image_settings.color_depth = "32"
-    scene.render.filepath = str(FOLDER / f"{name}-cycles.exr")
-    bpy.ops.render.render(write_still=True)
-    return pixels(scene.render.filepath)
+    path = FOLDER / f"{name}-cycles.exr"
+    truth.render(path, SIZE, 256)
+    return pixels(path)
 
 
 def arealight(scene, name, *options):

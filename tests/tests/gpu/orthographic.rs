@@ -4,6 +4,7 @@
 use arealight_engine::EngineError;
 use arealight_tests::prelude::*;
 use arealight_tests::scenes::{box_of, quad_light, square};
+use arealight_tool_kernels::gpu::VisibilityConstants;
 use std::time::Duration;
 
 const SIZE: [u32; 2] = [48, 32];
@@ -189,5 +190,46 @@ fn shadows_are_those_of_the_reference() {
         let [one, gathered, kept] = [one, gathered, kept].map(|found| error(&found, &mean));
         println!("{name}: noise {one:.3}, filtered {gathered:.3}, of 16 frames {kept:.3}");
         assert!(gathered < 0.8 * one && kept < 0.5 * one, "{one}, {gathered}, {kept}");
+    }
+}
+
+#[test]
+fn lines_of_sight_of_a_pixel_are_in_rows_and_columns_of_their_own() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = scene_of(&square(0.0, 9.0), without_textures(lambert(0.5)));
+    let bounds = [DVec3::NEG_ONE, DVec3::ONE].into_iter().collect();
+    let framing = Camera::framing("", bounds, DVec3::NEG_Y, DVec3::Z, ASPECT);
+    let camera = Camera { orthographic: true, half_height: HALF_HEIGHT, ..framing };
+    // Across and down, in quarters of a pixel of two by two texels, rounded down
+    let quarters = |supersample: u32, first_row: u32| -> Vec<[i64; 2]> {
+        let mut view = View::new(&engine, &scene, &camera);
+        let constants = view.buffers.constants(&camera, SIZE, Vec3::ZERO);
+        view.renderer.look(VisibilityConstants { supersample, first_row, ..constants });
+        view.renderer.visibility().unwrap();
+        let place = |[position, _]: [DVec3; 2]| {
+            let from = position - camera.position;
+            let across = from.dot(camera.right) / (HALF_HEIGHT * ASPECT) * f64::from(SIZE[0]);
+            let down = -from.dot(camera.up) / HALF_HEIGHT * f64::from(SIZE[1]);
+            [across.floor() as i64, down.floor() as i64]
+        };
+        view.surfaces().into_iter().map(place).collect()
+    };
+    let [width, height] = SIZE.map(|side| side as usize);
+    let steps = |places: &[[i64; 2]], axis: usize, pixel: [usize; 2]| {
+        let texels = [0, 1, width, width + 1].map(|texel| texel + 2 * (pixel[1] * width + pixel[0]));
+        texels.map(|texel| places[texel][axis]).into_iter().collect::<std::collections::BTreeSet<_>>().len()
+    };
+    let (whole, band, centers) = (quarters(2, 0), quarters(2, 3), quarters(1, 0));
+    for pixel in (0..height / 2).flat_map(|y| (0..width / 2).map(move |x| [x, y])) {
+        for axis in [0, 1] {
+            assert_eq!(steps(&whole, axis, pixel), 4, "{pixel:?}");
+            assert_eq!(steps(&centers, axis, pixel), 2, "the twin: centres of texels, {pixel:?}");
+        }
+    }
+    // A band that begins at an odd row is a part of the picture
+    for row in 0..height - 1 {
+        for x in 0..width {
+            assert_eq!(band[row * width + x][0], whole[(row + 1) * width + x][0], "{x}, {row}");
+        }
     }
 }

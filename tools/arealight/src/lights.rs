@@ -17,8 +17,8 @@ pub struct LightArguments {
     /// rest
     #[arg(long, value_name = "SECONDS", value_parser = parse_time, allow_negative_numbers = true)]
     time: Option<f64>,
-    /// What lights the scene: what the file has (`file`), or that and three softboxes around what the camera
-    /// sees, for models without lights (`studio`)
+    /// What lights the scene: what the file has (`file`), or that and three softboxes in a dim tent
+    /// around what the camera sees, for models without lights (`studio`)
     #[arg(long, value_name = "RIG", default_value = "file")]
     lights: Rig,
 }

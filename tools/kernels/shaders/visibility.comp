@@ -24,9 +24,9 @@ layout(push_constant, std430) uniform VisibilityConstants {
     vec3 camera;
     uint orthographic; // 1: lines of sight are parallel
     vec3 right;
-    uint reserved1;
+    uint supersample; // lines of sight of a pixel along each axis; 0 is 1
     vec3 up;
-    uint reserved2;
+    uint first_row;   // of the picture that the image is a band of
     vec3 forward;
     uint reserved3;
     vec3 background;
@@ -68,8 +68,10 @@ void main() {
     if (any(greaterThanEqual(pixel, size))) {
         return;
     }
-    // Send a ray through the pixel's centre
-    vec2 plane = (vec2(pixel) + 0.5) / vec2(size) * 2.0 - 1.0;
+    // Send a ray; those of a supersampled pixel each in a row and a column of its own
+    int n = int(max(constants.supersample, 1u));
+    vec2 place = (vec2((pixel.y + int(constants.first_row)) % n, n - 1 - pixel.x % n) + 0.5) / float(n);
+    vec2 plane = (vec2(pixel) + place) / vec2(size) * 2.0 - 1.0;
     vec3 across = plane.x * constants.right - plane.y * constants.up;
     bool parallel = constants.orthographic != 0u;
     vec3 direction = arealight_normalize_or(parallel ? constants.forward : constants.forward + across,

@@ -396,12 +396,13 @@ pub struct VisibilityConstants {
     /// From the middle of the image to its right edge, at distance 1 along `forward`; of an orthographic
     /// camera at any distance.
     pub right: [f32; 3],
-    /// Zero.
-    pub reserved1: u32,
+    /// Lines of sight of a pixel along each axis, a texel each. Those of a pixel are in rows and columns of
+    /// their own: an edge along either has as many steps as there are lines. 0 is 1.
+    pub supersample: u32,
     /// Likewise to its top edge.
     pub up: [f32; 3],
-    /// Zero.
-    pub reserved2: u32,
+    /// Of the picture's rows of texels, the one that the image begins at.
+    pub first_row: u32,
     /// Unit viewing direction; of an orthographic camera as long as a perspective one that sees as much would
     /// be away.
     pub forward: [f32; 3],

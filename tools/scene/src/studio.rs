@@ -1,5 +1,5 @@
 //! A photographer's light for models that bring none: three softboxes around what is shown, placed as the
-//! camera sees it.
+//! camera sees it, in a dim tent, which metals show where they show no softbox.
 
 use crate::bounds::Bounds;
 use crate::camera::Camera;
@@ -44,6 +44,9 @@ const SOFTBOXES: [Softbox; 3] = [
     },
 ];
 
+/// What the tent sends, dim beside the softboxes.
+const TENT: Vec3 = Vec3::splat(0.15);
+
 /// How far from the middle of the scene the softboxes are, in halves of its diagonal: beyond 1 they are
 /// outside of all that is there.
 const DISTANCE: f64 = 2.2;
@@ -53,8 +56,9 @@ const WITHIN: f64 = 0.6;
 
 impl Scene {
     /// Adds three softboxes, one-sided rectangles that are not drawn: a key from the camera's left, a fill
-    /// from its right, and a rim from behind, each facing the middle of [`Scene::bounds`], outside of them;
-    /// or within, where the camera is, facing what is before it. A scene without any extent stays as it is.
+    /// from its right, and a rim from behind, each facing the middle of [`Scene::bounds`], outside of them,
+    /// in a dim tent of three triangles; or within, where the camera is, facing what is before it, without
+    /// the tent. A scene without any extent stays as it is.
     ///
     /// # Errors
     /// [`LightFault`] where the scene is so large, or so far from the origin, that they cannot be shaded.
@@ -65,14 +69,18 @@ impl Scene {
         let lights = rig(self.bounds, camera);
         lights.iter().try_for_each(Light::validate)?;
         let first = self.lights.len();
+        let boxes = first + SOFTBOXES.len();
         self.lights.extend(lights);
-        self.lamps.extend(SceneLamp::bare(first..self.lights.len()));
+        self.lamps.extend(SceneLamp::bare(first..boxes));
+        if boxes < self.lights.len() {
+            self.lamps.push(SceneLamp { triangles: 0..0, lights: boxes..self.lights.len() });
+        }
         self.warnings.retain(|warning| warning.text != NO_LIGHTS);
         Ok(())
     }
 }
 
-/// The softboxes about a box, as a camera sees it.
+/// The softboxes about a box, as a camera sees it, then the tent's sides.
 fn rig(bounds: Bounds, camera: &Camera) -> Vec<Light> {
     let camera = camera.clone().pinhole(bounds.center());
     let [right, up, back] = frame(&camera);
@@ -92,7 +100,27 @@ fn rig(bounds: Bounds, camera: &Camera) -> Vec<Light> {
             focus + direction * (DISTANCE * 0.5 * bounds.diagonal().max(1e-3))
         }
     };
-    SOFTBOXES.iter().map(|softbox| facing(softbox, place(softbox), focus, up)).collect()
+    let boxes = SOFTBOXES.iter().map(|softbox| facing(softbox, place(softbox), focus, up));
+    let tent =
+        if is_within { Vec::new() } else { tent(bounds.center(), bounds.diagonal().max(1e-3), right, up) };
+    boxes.chain(tent).collect()
+}
+
+/// Three triangles that lean together above a place, of so large a radius and height, open below.
+fn tent(center: DVec3, radius: f64, right: DVec3, up: DVec3) -> Vec<Light> {
+    let back = right.cross(up);
+    // Beyond the softboxes, and from as far below as they are above: a floor's edge is before it
+    let foot = |turn: f64| {
+        let (sin, cos) = (turn * std::f64::consts::TAU).sin_cos();
+        center + (right * sin + back * cos) * (6.0 * radius) - up * radius
+    };
+    let side = |first: f64| Light {
+        name: "studio tent".to_owned(),
+        radiance: TENT,
+        shape: LightShape::Polygon(vec![foot(first), center + up * (4.0 * radius), foot(first + 1.0 / 3.0)]),
+        ..Light::default()
+    };
+    [0.0, 1.0 / 3.0, 2.0 / 3.0].map(side).to_vec()
 }
 
 /// To the right of a camera, up, and back from it, over the ground.
@@ -148,9 +176,9 @@ mod tests {
             let mut scene = scene(BOX);
             let camera = Camera::framing("", BOX, forward, DVec3::Y, 1.5);
             scene.add_studio(&camera).unwrap();
-            assert_eq!((scene.lights.len(), scene.lamps.len()), (3, 3));
+            assert_eq!((scene.lights.len(), scene.lamps.len()), (6, 4));
             let radius = 0.5 * BOX.diagonal();
-            for light in &scene.lights {
+            for light in &scene.lights[..3] {
                 let (center, front) = center_and_front(light);
                 assert!(
                     front.dot((BOX.center() - center).normalize_or_zero()) > 0.999_999,
@@ -163,8 +191,7 @@ mod tests {
                 );
                 assert!(center.y > BOX.center().y, "{forward}: above");
             }
-            let across: Vec<f64> = scene
-                .lights
+            let across: Vec<f64> = scene.lights[..3]
                 .iter()
                 .map(|light| (center_and_front(light).0 - BOX.center()).dot(camera.right))
                 .collect();
@@ -188,7 +215,7 @@ mod tests {
             let vertices: Vec<DVec3> = light.shape.vertices().iter().map(local).collect();
             form_factor(&vertices).max(0.0) * f64::from(light.radiance.y)
         };
-        let parts: Vec<f64> = scene.lights.iter().map(of_light).collect();
+        let parts: Vec<f64> = scene.lights[..3].iter().map(of_light).collect();
         assert!((parts.iter().sum::<f64>() - 1.0).abs() < 0.15, "{parts:?}");
         assert!(
             parts[0] > 3.0 * parts[1] && parts[2] == 0.0,
@@ -197,11 +224,33 @@ mod tests {
     }
 
     #[test]
+    fn above_the_horizon_there_is_one_side_of_the_tent_in_each_direction() {
+        let mut scene = scene(BOX);
+        scene.add_studio(&Camera::framing("", BOX, DVec3::new(1.0, -0.4, 0.3), DVec3::Y, 1.5)).unwrap();
+        let seen = |direction: DVec3| {
+            let before = |light: &&Light| {
+                let [a, b, c] = [0, 1, 2].map(|corner| light.shape.vertices()[corner] - BOX.center());
+                // Its front is a side's inside: its edges run clockwise about a ray from within
+                [a.cross(b), b.cross(c), c.cross(a)].iter().all(|edge| edge.dot(direction) < 0.0)
+            };
+            scene.lights[3..].iter().filter(before).count()
+        };
+        for turn in 0..360 {
+            let (sin, cos) = (f64::from(turn) + 0.5).to_radians().sin_cos();
+            for height in [0.0, 0.3, 2.0] {
+                assert_eq!(seen(DVec3::new(sin, height, cos)), 1, "{turn} {height}");
+            }
+            assert_eq!(seen(DVec3::new(sin, -0.5, cos)), 0, "{turn}: open below");
+        }
+    }
+
+    #[test]
     fn in_a_room_they_are_within_and_face_what_is_before_the_camera() {
         let room = Bounds { min: DVec3::new(-3.0, 0.0, -4.0), max: DVec3::new(3.0, 2.6, 4.0) };
         let camera = Camera::looking(String::new(), DVec3::new(1.0, 1.5, 3.0), DVec3::NEG_Z, DVec3::Y);
         let mut within = scene(room);
         within.add_studio(&camera).unwrap();
+        assert_eq!(within.lights.len(), 3, "no tent");
         let focus = DVec3::new(1.0, 1.5, 3.0 - 0.6 * 7.0);
         for light in &within.lights {
             let (center, front) = center_and_front(light);
@@ -212,7 +261,9 @@ mod tests {
         let outside = Camera { position: DVec3::new(1.0, 1.5, 9.0), ..camera };
         let mut around = scene(room);
         around.add_studio(&outside).unwrap();
-        assert!(around.lights.iter().all(|light| center_and_front(light).0.distance(room.center()) > 5.0));
+        assert!(
+            around.lights[..3].iter().all(|light| center_and_front(light).0.distance(room.center()) > 5.0)
+        );
     }
 
     #[test]
@@ -223,7 +274,7 @@ mod tests {
         assert!(nothing.lights.is_empty());
         for point in [DVec3::ZERO, DVec3::splat(7.0), DVec3::splat(1e15)] {
             let mut one = scene(Bounds { min: point, max: point });
-            assert!(one.add_studio(&camera).is_err() || one.lights.len() == 3, "{point}");
+            assert!(one.add_studio(&camera).is_err() || one.lights.len() == 6, "{point}");
         }
     }
 }

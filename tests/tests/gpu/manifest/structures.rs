@@ -96,7 +96,7 @@ fn structures() -> Vec<Structure> {
         }
         VISIBILITY: "ArealightGpuTexture" as GpuTexture { first_texel width height flags }
         VISIBILITY: "VisibilityConstants" as VisibilityConstants {
-            camera orthographic right reserved1 up reserved2 forward reserved3 background reserved4
+            camera orthographic right supersample up first_row forward reserved3 background reserved4
         }
     }
 }

@@ -60,7 +60,7 @@ fn a_model_without_lights_is_shown_by_the_studio() {
     assert!(words.contains("surfaces are black (--lights studio adds softboxes)"), "{words}");
     // Lit, and nothing to say
     let (summary, words) = render("model.gltf", "lit.png", &["--lights", "studio"]);
-    assert_eq!((&summary["lights"], &*words), (&3.into(), ""));
+    assert_eq!((&summary["lights"], &*words), (&6.into(), ""));
     let mean = |name: &str| {
         let picture = image::open(folder.join(name)).unwrap().to_luma8();
         picture.pixels().map(|p| f64::from(p.0[0])).sum::<f64>() / f64::from(48 * 27)
@@ -87,7 +87,7 @@ fn softboxes_are_added_to_what_the_file_has() {
         let common = ["render", &screen, "-o", "a.png", "--json", "--size", "16x9"];
         said(folder.path(), &[&common, more].concat()).0["lights"].as_u64().unwrap()
     };
-    assert_eq!(lights(&["--lights", "studio"]), lights(&["--lights", "file"]) + 3);
+    assert_eq!(lights(&["--lights", "studio"]), lights(&["--lights", "file"]) + 6);
 }
 
 #[test]

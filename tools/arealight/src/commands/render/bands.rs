@@ -49,7 +49,8 @@ impl Band {
         let part = of_height(self.rendered.end - self.rendered.start);
         let up = Vec3::from(picture.up).as_dvec3();
         let moved = |from: [f32; 3]| (Vec3::from(from).as_dvec3() + middle * up).as_vec3().to_array();
-        let mut band = VisibilityConstants { up: (part * up).as_vec3().to_array(), ..picture };
+        let first_row = self.rendered.start;
+        let mut band = VisibilityConstants { up: (part * up).as_vec3().to_array(), first_row, ..picture };
         // A pinhole turns, and lines of sight that are parallel begin elsewhere
         if picture.orthographic == 0 {
             band.forward = moved(picture.forward);
@@ -96,9 +97,9 @@ mod tests {
             camera: [1.0, 2.0, 3.0],
             orthographic: 0,
             right: [0.5, 0.0, 0.0],
-            reserved1: 0,
+            supersample: 1,
             up: [0.0, 0.4, 0.1],
-            reserved2: 0,
+            first_row: 0,
             forward: [0.0, 0.0, -1.0],
             reserved3: 0,
             background: [0.0; 3],

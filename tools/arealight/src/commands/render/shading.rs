@@ -13,6 +13,7 @@ use arealight_engine::{
     BlockerBuffers, Engine, EngineError, Fog, Reference, SceneRenderer, ShadowedView, TileCounts,
 };
 use arealight_scene::{Camera, Scene, SceneBuffers};
+use arealight_tool_kernels::gpu::VisibilityConstants;
 use glam::Vec3;
 use indicatif::ProgressBar;
 use std::rc::Rc;
@@ -115,7 +116,8 @@ pub fn render(
     (arguments, frame): (&Arguments, &mut Frame),
 ) -> Result<Outcome, EngineError> {
     let buffers = SceneBuffers::new(scene, frame.origin)?;
-    let whole = buffers.constants(camera, size, Vec3::ZERO);
+    let supersample = arguments.supersample;
+    let whole = VisibilityConstants { supersample, ..buffers.constants(camera, size, Vec3::ZERO) };
     let bands = Band::of(size, MOST_SAMPLES);
     let bar = match arguments.reference {
         _ if arguments.film.frames.is_some() => ProgressBar::hidden(),
