@@ -82,13 +82,19 @@ BvhHit bvh_trace(vec3 origin, vec3 direction, float limit, bool any_hit) {
     uint end = nodes[0].count > 0u ? 1u : nodes[0].first;
     uint index = 0u;
     while (index < end && !(any_hit && hit.triangle != BVH_NO_TRIANGLE)) {
-        ArealightGpuBvhNode node = nodes[index];
-        bool is_leaf = node.count > 0u;
-        bool is_entered = bvh_enters(node, origin, inverse_direction, hit.distance);
-        for (uint i = 0u; is_entered && i < node.count; i++) {
-            bvh_meet_triangle(node.first + i, origin, direction, hit);
+        // On to the next leaf that is entered, so that rays side by side come to their triangles together
+        uint first = 0u;
+        uint count = 0u;
+        while (index < end && count == 0u) {
+            ArealightGpuBvhNode node = nodes[index];
+            bool is_entered = bvh_enters(node, origin, inverse_direction, hit.distance);
+            first = node.first;
+            count = is_entered ? node.count : 0u;
+            index = node.count > 0u || is_entered ? index + 1u : max(node.first, index + 1u);
         }
-        index = is_leaf || is_entered ? index + 1u : max(node.first, index + 1u);
+        for (uint i = 0u; i < count; i++) {
+            bvh_meet_triangle(first + i, origin, direction, hit);
+        }
     }
     return hit;
 }

@@ -2,11 +2,12 @@
 
 use crate::failure::Failure;
 use crate::memory;
+use crate::view::Look;
 use arealight_scene::{Camera, LoadOptions, Scene};
 use std::path::{Path, PathBuf};
 
 /// What a scene is lit by.
-#[derive(clap::Args, Clone, Copy, Debug)]
+#[derive(clap::Args, Clone, Debug)]
 #[command(next_help_heading = "Scene")]
 pub struct LightArguments {
     /// The radius of points and spots of `KHR_lights_punctual`, in metres, and show suns half a degree wide;
@@ -21,6 +22,9 @@ pub struct LightArguments {
     /// around what the camera sees, for models without lights (`studio`)
     #[arg(long, value_name = "RIG", default_value = "file")]
     lights: Rig,
+    /// The camera and lamps as `arealight view` saved them, with `p`, of this scene
+    #[arg(long, value_name = "FILE")]
+    look: Option<PathBuf>,
 }
 
 /// Lights that are not the file's.
@@ -32,20 +36,38 @@ enum Rig {
 
 impl LightArguments {
     /// The time that the scene is shown at first.
-    pub fn time(self) -> f64 {
+    pub fn time(&self) -> f64 {
         self.time.unwrap_or(0.0)
     }
 
     /// The same so many seconds later.
     #[must_use]
-    pub fn later(self, seconds: f64) -> Self {
-        Self { time: Some(self.time() + seconds), ..self }
+    pub fn later(&self, seconds: f64) -> Self {
+        Self { time: Some(self.time() + seconds), ..self.clone() }
+    }
+
+    /// What a person made of a scene.
+    pub fn look(&self, scene: &Scene) -> Result<Option<Look>, Failure> {
+        self.look.as_deref().map(|path| Look::read(path, scene)).transpose()
+    }
+
+    /// Reads a scene, as a person left it, and finds the camera.
+    pub fn load(
+        &self,
+        path: Option<&Path>,
+        camera: Option<&str>,
+        aspect: f64,
+    ) -> Result<(Scene, Camera), Failure> {
+        let (mut scene, camera) = self.load_as_it_is(path, camera, aspect)?;
+        let look = self.look(&scene)?;
+        let camera = look.map_or(camera, |look| look.apply(&mut scene));
+        Ok((scene, camera))
     }
 
     /// Reads a scene, or the demo's if there is none, and finds the camera: that of a name, the file's first,
     /// or one that frames the scene. What is not shown of it is for the caller to say.
-    pub fn load(
-        self,
+    pub fn load_as_it_is(
+        &self,
         path: Option<&Path>,
         camera: Option<&str>,
         aspect: f64,

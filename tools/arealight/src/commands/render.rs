@@ -155,7 +155,8 @@ impl Arguments {
     fn load(&self, index: u32) -> Result<(Scene, Camera), Failure> {
         let aspect = f64::from(self.size[0]) / f64::from(self.size[1]);
         let (path, camera) = (self.scene.as_deref(), self.camera.as_deref());
-        let lights = self.film.seconds(index).map_or(self.lights, |seconds| self.lights.later(seconds));
+        let seconds = self.film.seconds(index);
+        let lights = seconds.map_or_else(|| self.lights.clone(), |seconds| self.lights.later(seconds));
         let found = lights.load(path, camera, aspect)?;
         if index == 0 {
             output::say_what_is_not_shown(&found.0, &self.scene_name());

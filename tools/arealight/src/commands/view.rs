@@ -7,7 +7,7 @@ use crate::lights::{LightArguments, scene_name};
 use crate::output::{self, print};
 use crate::picture::Exposure;
 use crate::progress;
-use crate::view::{Engines, Interface, Mode, Script, Shown, State, Viewer, paint, show};
+use crate::view::{Engines, Interface, Look, Mode, Script, Shown, State, Viewer, paint, show};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -39,8 +39,8 @@ pub struct Arguments {
     /// `wheel STEPS`; the viewer ends with it
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
-    /// Open no window, and write what the script does into this folder: frame-0000.png and so on, and
-    /// film.gif
+    /// Open no window, and write what the script does into this folder: frame-0000.png and so on, film.gif,
+    /// and the camera and lamps at its end, look.json
     #[arg(long, value_name = "DIR", requires = "script")]
     record: Option<PathBuf>,
     /// Frames a second of a recording
@@ -63,8 +63,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let path = scene_name(arguments.scene.as_deref());
     let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
     let (scene, camera) =
-        arguments.lights.load(arguments.scene.as_deref(), arguments.camera.as_deref(), aspect)?;
+        arguments.lights.load_as_it_is(arguments.scene.as_deref(), arguments.camera.as_deref(), aspect)?;
     output::say_what_is_not_shown(&scene, &path);
+    let look = arguments.lights.look(&scene)?;
     let script = arguments.script.as_deref().map(read_script).transpose()?;
     let exposure = match arguments.exposure {
         Exposure::Stops(stops) => stops,
@@ -90,6 +91,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let camera = camera.pinhole(scene.bounds.center());
     let mut state = State::new(&scene, &camera, exposure, engines.has_yardstick());
     state.time = arguments.lights.time();
+    if let Some(look) = look {
+        look.begin(&mut state);
+    }
     let viewer = Viewer::new(&engines, scene, arguments.size).map_err(|error| gpu::failure(error, &path))?;
     match (&arguments.record, script) {
         (Some(folder), Some(script)) => record(arguments, viewer, state, &script, folder, &path),
@@ -148,6 +152,7 @@ fn record(
         }
     }
     bar.finish_and_clear();
+    Look::of(&state).save(&folder.join("look.json"))?;
     let film = folder.join(FILM);
     crate::film::save(&film, &frames, arguments.rate)?;
     eprintln!("wrote {} frames and {}", frames.len(), film.display());

@@ -1,10 +1,13 @@
 //! Lamps that are picked and moved: their lights, and the triangles that look like them.
 
+use super::look::Range;
 use arealight::{Light, LightShape, Profile};
 use arealight_scene::rays::intersect_vertices;
 use arealight_scene::{Camera, Scene};
 use glam::{DAffine3, DQuat, DVec3, Vec3};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 
 /// How near to the middle of a lamp that no mesh is a click picks it, in heights of the picture.
 const NEAR: f64 = 0.03;
@@ -44,25 +47,29 @@ pub fn pick(scene: &Scene, camera: &Camera, heights: [f64; 2]) -> Option<(usize,
 }
 
 /// What a person has made of a lamp.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Edit {
     pub is_on: bool,
     /// In the world.
     pub offset: DVec3,
     /// Degrees about the vertical, and then about the horizontal that is across its front.
     pub turn: [f64; 2],
-    /// A factor, above 0.
+    /// A factor.
     pub size: f64,
     /// Of its radiance, a factor of 2 each.
-    pub stops: f32,
+    pub stops: f64,
     /// What its radiance is multiplied with, linear.
     pub color: [f32; 3],
     /// Degrees from its front, beyond which it does not shine; 90 is as it was.
     pub beam: f64,
+    /// The groups of surfaces of which it lights those that it did not, or no more those that it did: bits of
+    /// [`Light::links`].
+    pub links: u8,
 }
 
 /// The widest beam.
-pub const WHOLE: f64 = 90.0;
+const WHOLE: f64 = 90.0;
 /// A beam begins to fade at this part of its angle.
 const INNER: f64 = 0.6;
 /// Levels of a beam's profile: 3 % of the mean off at most (docs/shaped-light.md).
@@ -78,7 +85,29 @@ impl Edit {
         stops: 0.0,
         color: [1.0; 3],
         beam: WHOLE,
+        links: 0,
     };
+
+    pub const STOPS: RangeInclusive<f64> = -8.0..=8.0;
+    pub const SIZE: RangeInclusive<f64> = 0.1..=10.0;
+    pub const BEAM: RangeInclusive<f64> = 3.0..=WHOLE;
+    pub const TURN: [RangeInclusive<f64>; 2] = [-180.0..=180.0, -90.0..=90.0];
+    pub const OFFSET: RangeInclusive<f64> = -1e9..=1e9;
+
+    /// What each number may be.
+    pub fn ranges(&self) -> Vec<Range> {
+        let [turn, tilt] = Self::TURN;
+        let mut ranges = vec![
+            ("stops", self.stops, Self::STOPS),
+            ("size", self.size, Self::SIZE),
+            ("beam", self.beam, Self::BEAM),
+            ("turn[0]", self.turn[0], turn),
+            ("turn[1]", self.turn[1], tilt),
+        ];
+        ranges.extend(self.offset.to_array().map(|side| ("offset", side, Self::OFFSET)));
+        ranges.extend(self.color.map(|channel| ("color", channel.into(), 0.0..=1.0)));
+        ranges
+    }
 
     /// A light of this beam; as it is where the light has no front that is one, as spheres, or is bent.
     fn shaped(&self, light: Light) -> Light {
@@ -91,7 +120,7 @@ impl Edit {
 
     /// What the lamp's radiance is multiplied with.
     fn factor(&self) -> Vec3 {
-        if self.is_on { Vec3::from(self.color) * self.stops.exp2() } else { Vec3::ZERO }
+        if self.is_on { Vec3::from(self.color) * self.stops.exp2() as f32 } else { Vec3::ZERO }
     }
 
     /// Turns and grows about the middle of a light, and moves.
@@ -117,7 +146,8 @@ pub fn edit(scene: &mut Scene, edits: &[Edit]) {
         let transform = lights.first().map_or(DAffine3::IDENTITY, |light| edit.transform(light));
         let factor = edit.factor();
         for light in lights {
-            *light = edit.shaped(Light { radiance: light.radiance * factor, ..light.moved(&transform) });
+            let (radiance, links) = (light.radiance * factor, light.links ^ edit.links);
+            *light = edit.shaped(Light { radiance, links, ..light.moved(&transform) });
         }
         let mut bright: Option<(u32, u32)> = None;
         for triangle in scene.triangles.get_mut(lamp.triangles.clone()).into_iter().flatten() {
@@ -237,8 +267,8 @@ mod tests {
             let path = format!("{}/../../scenes/{file}.glb", env!("CARGO_MANIFEST_DIR"));
             let before = Scene::load(Path::new(&path)).unwrap();
             let mut after = before.clone();
-            let one =
-                Edit { turn: [90.0, 10.0], size: 2.0, stops: -1.0, color: [1.0, 0.5, 0.0], ..Edit::NONE };
+            let (turn, color) = ([90.0, 10.0], [1.0, 0.5, 0.0]);
+            let one = Edit { turn, size: 2.0, stops: -1.0, color, links: 5, ..Edit::NONE };
             let edits: Vec<Edit> = (0..before.lamps.len())
                 .map(|i| Edit { offset: DVec3::new(0.0, i as f64, -0.5), is_on: i != 1, ..one })
                 .collect();
@@ -250,7 +280,7 @@ mod tests {
                 assert!((middles[1] - middles[0] - edited.offset).length() < 1e-9, "{file} {index}");
                 for light in lamp.lights.clone() {
                     let [was, is] = [&before, &after].map(|scene| &scene.lights[light]);
-                    assert_eq!(is.radiance, was.radiance * factor);
+                    assert_eq!((is.radiance, is.links), (was.radiance * factor, was.links ^ 5));
                     assert!(is.validate().is_ok());
                 }
                 for triangle in lamp.triangles.clone() {

@@ -4,6 +4,7 @@
 mod costs;
 mod interface;
 mod lamps;
+mod look;
 mod orbit;
 mod paint;
 mod panel;
@@ -13,6 +14,7 @@ mod viewer;
 mod window;
 
 pub use interface::Interface;
+pub use look::Look;
 pub use paint::paint;
 pub use script::Script;
 pub use state::{Mode, State};

@@ -1,7 +1,9 @@
 //! A camera that goes round a point.
 
+use super::look::Range;
 use arealight_scene::{Bounds, Camera};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Radians to the poles, where there is no up any more.
@@ -14,7 +16,8 @@ const TURN: f64 = 2.5;
 const STEP: f64 = 0.9;
 
 /// A camera that looks at a point from a distance; up is where y points to.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Orbit {
     /// What it looks at, in the world.
     pub center: DVec3,
@@ -42,6 +45,19 @@ impl Orbit {
             pitch: back.y.atan2(back.x.hypot(back.z)).clamp(-MOST_PITCH, MOST_PITCH),
             tan_half_height: camera.half_height,
         }
+    }
+
+    /// What each number may be.
+    pub fn ranges(&self) -> Vec<Range> {
+        let above_zero = f64::MIN_POSITIVE..=1e30;
+        let mut ranges = vec![
+            ("distance", self.distance, above_zero.clone()),
+            ("yaw", self.yaw, -TAU..=TAU),
+            ("pitch", self.pitch, -MOST_PITCH..=MOST_PITCH),
+            ("tan_half_height", self.tan_half_height, above_zero),
+        ];
+        ranges.extend(self.center.to_array().map(|side| ("center", side, -1e30..=1e30)));
+        ranges
     }
 
     /// Turns by a drag, in heights of the picture: what is seen follows the pointer.

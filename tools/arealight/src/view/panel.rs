@@ -43,7 +43,7 @@ impl Shown<'_> {
 pub fn panel(context: &Context, state: &mut State, shown: &Shown<'_>) {
     let height = context.content_rect().height() - 140.0;
     Window::new("Arealight").default_pos([8.0, 8.0]).resizable(false).show(context, |ui| {
-        ScrollArea::vertical().max_height(height).show(ui, |ui| {
+        ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
             ui.set_width(232.0);
             ui.spacing_mut().slider_width = 110.0;
             picture(ui, state, shown.scene.has_moving_images());
@@ -56,7 +56,8 @@ pub fn panel(context: &Context, state: &mut State, shown: &Shown<'_>) {
             ui.separator();
             ui.small(format!("effects: {}", shown.effects));
             ui.horizontal(|ui| {
-                state.save |= ui.button("Save picture").clicked();
+                let save = ui.button("Save picture").on_hover_text("and the camera and lamps, for --look");
+                state.save |= save.clicked();
                 if ui.button("Reset").on_hover_text("lamps, camera, exposure, fog, roughness").clicked() {
                     state.press_key(Key::Reset);
                 }
@@ -137,19 +138,31 @@ fn edit(ui: &mut Ui, state: &mut State, shown: &Shown<'_>, lamp: usize) {
     let step = 2e-3 * shown.scene.bounds.diagonal().max(1e-6);
     let Some(edit) = state.lamps.get_mut(lamp) else { return };
     ui.horizontal(|ui| {
-        ui.add(Slider::new(&mut edit.stops, -8.0..=8.0).text("stops"));
+        ui.add(Slider::new(&mut edit.stops, Edit::STOPS).text("stops"));
         ui.color_edit_button_rgb(&mut edit.color);
     });
-    ui.add(Slider::new(&mut edit.size, 0.1..=10.0).logarithmic(true).text("size"));
-    let beam = Slider::new(&mut edit.beam, 3.0..=super::lamps::WHOLE).suffix("°").text("beam");
+    ui.add(Slider::new(&mut edit.size, Edit::SIZE).logarithmic(true).text("size"));
+    let beam = Slider::new(&mut edit.beam, Edit::BEAM).suffix("°").text("beam");
     ui.add(beam).on_hover_text("of flat lamps: beyond this angle from the front no light goes");
-    for (degrees, (most, name)) in edit.turn.iter_mut().zip([(180.0, "turn"), (90.0, "tilt")]) {
-        ui.add(Slider::new(degrees, -most..=most).suffix("°").text(name));
+    for ((degrees, range), name) in edit.turn.iter_mut().zip(Edit::TURN).zip(["turn", "tilt"]) {
+        ui.add(Slider::new(degrees, range).suffix("°").text(name));
+    }
+    if shown.scene.triangles.iter().any(|triangle| triangle.groups != 0) {
+        let lights = &shown.scene.lamps[lamp].lights;
+        let links = shown.scene.lights.get(lights.start).map_or(0, |light| light.links);
+        ui.horizontal(|ui| {
+            for bit in (0..8).map(|group| 1 << group) {
+                if ui.checkbox(&mut (links & bit != 0), "").changed() {
+                    edit.links ^= bit;
+                }
+            }
+            ui.label("links").on_hover_text("groups of surfaces that it lights; none: all");
+        });
     }
     ui.horizontal(|ui| {
         for side in edit.offset.as_mut() {
             // Within a range nan and inf, which can be typed, are numbers
-            ui.add(egui::DragValue::new(side).range(-1e9..=1e9).speed(step).max_decimals(3));
+            ui.add(egui::DragValue::new(side).range(Edit::OFFSET).speed(step).max_decimals(3));
         }
         ui.label("moved");
         if ui.small_button("undo").on_hover_text("this lamp as it was").clicked() {

@@ -68,7 +68,7 @@ pub const KEYS: [(&str, &str); 13] = [
     ("space", "images that move stand still, or go on"),
     ("arrows", "turn the camera, as dragging does; the wheel goes nearer"),
     ("r", "everything as it was"),
-    ("p", "save the picture"),
+    ("p", "save the picture, and the camera and lamps"),
     ("h, escape", "this panel; quit"),
 ];
 

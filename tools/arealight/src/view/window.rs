@@ -2,6 +2,7 @@
 //! need not present.
 
 use super::interface::Interface;
+use super::look::Look;
 use super::paint;
 use super::script::Script;
 use super::state::{Event, Key, State};
@@ -174,9 +175,10 @@ impl Desk<'_> {
         let shown = self.viewer.shown(&self.state);
         let mut frame = paint(&self.state, &shown).enlarged(self.size);
         if std::mem::take(&mut self.state.save) {
-            let path = format!("view-{:04}.png", self.frames);
-            frame.save_png(path.as_ref())?;
-            eprintln!("wrote {path}");
+            let name = format!("view-{:04}", self.frames);
+            frame.save_png(format!("{name}.png").as_ref())?;
+            Look::of(&self.state).save(format!("{name}.json").as_ref())?;
+            eprintln!("wrote {name}.png and {name}.json");
         }
         self.interface.draw(&mut frame, &mut self.state, &shown);
         let Some((window, surface)) = &mut self.window else { return Ok(()) };

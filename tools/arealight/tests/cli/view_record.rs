@@ -180,3 +180,28 @@ fn wrong_scripts_and_places_are_refused() {
     refused(&["view", "--exposure", "auto"], 2, "--exposure");
     refused(&["view", "missing.glb"], 3, "missing.glb");
 }
+
+#[test]
+fn what_was_made_of_a_scene_is_rendered() {
+    let Some(()) = device() else { return };
+    // The lamp goes to the side, and the view turns
+    let lamp = "0.25 press 0.5 0.13\n0.5 move 0.7 0.2\n0.5 release\n";
+    let view = "0.75 press 0.5 0.98\n1 move 0.6 0.9\n1 release\n";
+    let recording = record("sweep.glb", &format!("0 key s\n{lamp}{view}"));
+    let folder = recording.folder.path();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/sweep.glb");
+    let render = |more: &[&str]| {
+        let common =
+            ["render", scene.to_str().unwrap(), "--size", "160x96", "--supersample", "1", "--shadows", "off"];
+        assert_eq!(run(folder, &[&common, &["-o", "still.png"], more].concat()).status.code(), Some(0));
+        image::open(folder.join("still.png")).unwrap().to_rgb8().into_raw()
+    };
+    let last = recording.pixels(recording.frames.len() - 1);
+    // The frame has words in a corner
+    let [same, other] = [&["--look", "out/look.json"][..], &[]].map(|more| difference(&render(more), &last));
+    assert!(same < 0.1 && other > 0.5, "{same}, {other}");
+    let room = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/room.glb");
+    let refused = run(folder, &["render", room.to_str().unwrap(), "--look", "out/look.json"]);
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.status.code() == Some(3) && said.contains("look.json: it is of 1 lamps"), "{said}");
+}
