@@ -13,7 +13,8 @@ use arealight_vk::ash::vk::Format;
 use glam::{DVec3, Vec3, Vec4};
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
+/// The built-in table.
+pub static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 /// The ways to a surface's lobes: both horizons, two lobes, half vectors, formulas.
 pub fn lobe_qualities() -> [Quality; 5] {

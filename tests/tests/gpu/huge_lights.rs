@@ -5,7 +5,6 @@ use arealight_benches::pictures;
 use arealight_oracle::stream::Stream;
 use arealight_tests::materials::polygon_twin;
 use arealight_tests::prelude::*;
-use std::sync::Arc;
 
 const CASES: u64 = 120;
 
@@ -39,7 +38,7 @@ fn ceiling(stream: &mut Stream, axes: Axes, size: f64, height: f64) -> Light {
     let center = DVec2::from(stream.circle()) * 0.3 * size * stream.unit();
     let turn = stream.unit();
     let corner = |index: usize| {
-        let angle = std::f64::consts::TAU * (index as f64 + turn) / count as f64;
+        let angle = TAU * (index as f64 + turn) / count as f64;
         // Counter-clockwise from below is clockwise from above
         let way = DVec2::new(angle.cos(), -angle.sin() * axes.sign);
         axes.at(center + way * size, height)
@@ -167,7 +166,7 @@ fn in_plane(beside: f64) -> Vec<EvalPoint> {
         let (u, v) = stream.direction().any_orthonormal_pair();
         let count = 3 + stream.below(6);
         let corner = |index: usize| {
-            let angle = std::f64::consts::TAU * index as f64 / count as f64;
+            let angle = TAU * index as f64 / count as f64;
             (angle.cos() + beside) * u + angle.sin() * v
         };
         let shape = LightShape::Polygon((0..count).map(corner).collect());

@@ -7,10 +7,6 @@ use arealight_tests::globe::icosphere;
 use arealight_tests::lobe::{Lobe, Seen};
 use arealight_tests::prelude::*;
 use glam::DAffine3;
-use std::f64::consts::TAU;
-use std::sync::LazyLock;
-
-static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 const SIZE: [u32; 2] = [64, 36];
 

@@ -1,13 +1,10 @@
 //! How far lights are of any matter, by points outside.
 
 use arealight::reach::{self, DIFFUSE_DENSITY};
-use arealight_oracle::shading::{ltc, shape_ltc_on, shape_seen_from};
+use arealight_oracle::shading::{shape_ltc_on, shape_seen_from};
 use arealight_oracle::stream::Stream;
 use arealight_tests::kernel::LIGHT_REACH;
 use arealight_tests::prelude::*;
-use std::sync::LazyLock;
-
-static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 const THRESHOLD: f64 = 0.01;
 const LEAST_ROUGHNESS: f64 = 0.3;

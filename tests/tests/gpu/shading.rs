@@ -1,14 +1,9 @@
 //! The GPU against the float64 oracle: the same table, the same integral, in another precision.
 
 use arealight::table::{LAYERS, LobePairs};
-use arealight_oracle::shading::{ltc, ltc_on};
 use arealight_tests::prelude::*;
-use arealight_vk::TableFormat;
-use std::sync::LazyLock;
 
 const COUNT: usize = 4000;
-
-static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 fn expected(point: &EvalPoint) -> DVec3 {
     expected_with(&TABLE, point)

@@ -4,13 +4,11 @@ use arealight::plan::{ShadowFilter, ShadowHistory};
 use arealight::{LightTexture, Opening, Profile, PyramidSize, TexturePart};
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{SupportedCase, read_cases};
-use arealight_engine::{Engine, Reference, SourceImage, SourceTexels};
+use arealight_engine::{Engine, Reference};
 use arealight_oracle::cubature::Settings;
-use arealight_oracle::shading::{ltc_on, truth};
+use arealight_oracle::shading::truth;
 use arealight_tests::prelude::*;
-use arealight_tests::scenes::box_of;
 use glam::DVec2;
-use std::f64::consts::TAU;
 
 fn read(name: &str) -> String {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/reference/");

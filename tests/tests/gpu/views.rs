@@ -1,13 +1,8 @@
 //! Which pixels a frame is, and from where it is seen: viewports, rectangles, half resolution and
 //! orthographic cameras, with and without tiles, each pixel against the oracle.
 
-use crate::recorder::field;
-use arealight_oracle::shading::ltc;
 use arealight_tests::floor::looking_at_floor;
-use arealight_tests::one_pixel::material;
-use arealight_tests::pass::{
-    LightBuffers, image, planes, radiance, read, reads, run, store, stored_in, texels,
-};
+use arealight_tests::pass::{run, texels};
 use arealight_tests::prelude::*;
 use arealight_vk::Viewport;
 use glam::{DMat4, DVec4};
@@ -147,8 +142,7 @@ fn shade(
     let frames: Vec<_> = frames.iter().map(|frame| ShadeFrame { lights: summary, ..*frame }).collect();
     let tiles = tiles.then_some(TileOptions { least_quads: 0, ..TileOptions::default() });
     let info = ShadePassInfo { tiles, table_size: engine.table_size(), ..options.into() };
-    // SAFETY: `run` waits, and the pass is dropped before the engine.
-    let pass = unsafe { ShadePass::new(engine.context(), info) }.unwrap();
+    let pass = engine.pass(info).unwrap();
     // Frames with tiles have their lists in turn
     run(engine, &pass, &resources, TEXELS, &frames, Descriptors::Sets);
     stored_in(&radiance)
@@ -263,8 +257,7 @@ fn half_resolution_shades_every_other_texel() {
 #[test]
 fn views_that_cannot_be_are_refused_by_field() {
     let Some(engine) = TestEngine::new() else { return };
-    // SAFETY: nothing is made where an error is returned; else it is dropped before the engine.
-    let pass = |options| unsafe { ShadePass::new(engine.context(), options) };
+    let pass = |options: ShadeOptions| engine.pass(options);
     let plain = ShadeOptions::default();
     for texels_per_pixel in [0, 17] {
         assert_eq!(field(&pass(ShadeOptions { texels_per_pixel, ..plain }).unwrap_err()), "texels_per_pixel");
