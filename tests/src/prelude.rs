@@ -2,7 +2,7 @@
 
 pub use crate::floor::{Floor, lamps, pixels};
 pub use crate::frame::{reflected, reflected_by_tiles, scene, with_renderer, with_view};
-pub use crate::materials::{TABLE, lobe_qualities, under_polygon, under_shapes};
+pub use crate::materials::{TABLE, lobe_qualities, polygon_twin, under_polygon, under_shapes};
 pub use crate::one_pixel::{BEFORE, OnePixel, lamp, material};
 pub use crate::pass::{LightBuffers, field, image, planes, radiance, read, reads, store, stored_in};
 pub use crate::scenes::{box_of, lambert, quad_light, scene_of, square, without_textures};

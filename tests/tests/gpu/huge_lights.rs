@@ -3,7 +3,6 @@
 
 use arealight_benches::pictures;
 use arealight_oracle::stream::Stream;
-use arealight_tests::materials::polygon_twin;
 use arealight_tests::prelude::*;
 
 const CASES: u64 = 120;
@@ -111,15 +110,9 @@ fn ceilings_of_any_size_stay_lit() {
     {
         let quality = Quality { form_factor, ..Quality::default() };
         let points = points(is_tilted);
-        let answers = engine.eval(&points, quality).unwrap();
-        let mut comparison = Comparison::new(format!("tilted: {is_tilted}, {form_factor:?}"));
-        let mut bright = 0;
-        for (index, (point, answer)) in points.iter().zip(&answers).enumerate() {
-            let expected = polygon_twin(quality, point);
-            bright += usize::from(expected.x > 0.3);
-            comparison.add_color(*answer, expected, bound(point), || format!("point {index}: {point:?}"));
-        }
-        comparison.assert_all();
+        let what = format!("tilted: {is_tilted}, {form_factor:?}");
+        engine.beside_polygon_twin(what, quality, &points, bound).assert_all();
+        let bright = points.iter().filter(|point| polygon_twin(quality, point).x > 0.3).count();
         assert!(bright > points.len() / 2, "{bright} are lit");
     }
 }

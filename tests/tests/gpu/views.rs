@@ -1,7 +1,7 @@
 //! Which pixels a frame is, and from where it is seen: viewports, rectangles, half resolution and
 //! orthographic cameras, with and without tiles, each pixel against the oracle.
 
-use arealight_tests::floor::looking_at_floor;
+use arealight_tests::floor::{floor_material, looking_at_floor};
 use arealight_tests::pass::{run, texels};
 use arealight_tests::prelude::*;
 use arealight_vk::Viewport;
@@ -150,7 +150,7 @@ fn shade(
 
 /// The largest difference from the oracle, of pixels that some shot has; others are as they were.
 fn worst(options: ShadeOptions, shots: &[Shot], found: &[Vec4]) -> f64 {
-    let (table, lights, surface) = (LightTable::ggx(), lights(), dielectric());
+    let (table, lights, surface) = (LightTable::ggx(), lights(), floor_material().surface());
     let (mut worst, mut lit) = (0.0_f64, 0);
     for (pixel, found) in texels(TEXELS).zip(found) {
         let Some(shot) = shots.iter().find(|shot| shot.has(pixel, 1)) else {
@@ -170,11 +170,6 @@ fn worst(options: ShadeOptions, shots: &[Shot], found: &[Vec4]) -> f64 {
     let pixels: usize = shots.iter().map(|shot| (shot.size[0] * shot.size[1]) as usize).sum();
     assert!(lit > pixels / 4, "{lit} of {pixels} pixels are lit");
     worst
-}
-
-/// The floor's surface: the kernel's own reflectance of dielectrics.
-fn dielectric() -> Surface {
-    Material { dielectric_f0: Vec3::splat(0.04), dielectric_f90: 1.0, ..material() }.surface()
 }
 
 /// Twenty units away a depth of 24 bits is known to 4e-6 of them with this near plane, and radiance of 3
