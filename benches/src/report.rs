@@ -22,13 +22,10 @@ pub(crate) const OVERVIEW: [&str; 7] = [
 /// The document's words on the first table.
 const PROMISES: &str = "\
 Each family's polygons go through every quality level of the form factor, and through what others ship: \
-sphere-horizon \
-(EEVEE, LearnOpenGL: no clip, a clipped sphere of the same form factor), clipless (three.js, HDRP's default: \
-no clip, a rational \
-function in its place), clip-by-cases (Bevy, Godot, ltc_code: quads clipped by 16 cases); and clip-and-acos, \
-which \
-clips any outline and takes arc cosines, as the first listing of Heitz et al. 2016. The bits of each result \
-are judged against a reference of 106 bits:
+sphere-horizon (EEVEE, LearnOpenGL: no clip, a clipped sphere of the same form factor), clipless (three.js, \
+HDRP's default: no clip, a rational function in its place), clip-by-cases (Bevy, Godot, ltc_code: quads \
+clipped by 16 cases); and clip-and-acos, which clips any outline and takes arc cosines, as the first listing \
+of Heitz et al. 2016. The bits of each result are judged against a reference of 106 bits:
 
 1. A finite number in [0, 1]; exactly 0 where a vertex is NaN or infinite.
 2. *Backward*: within 6e-7 of the interval of values that the polygons have whose vertices differ by at most \
@@ -40,9 +37,8 @@ farthest vertex.
 The yardsticks are held to the promises of the difference form.
 
 The table gives the largest backward error; **bold** is a promise broken, any of the four. A forward error \
-near 1 \
-beside a small backward one is contact: on a light's surface the form factor jumps, and no float32 vertex \
-says on which side it is.
+near 1 beside a small backward one is contact: on a light's surface the form factor jumps, and no float32 \
+vertex says on which side it is.
 
 ";
 

@@ -4,21 +4,25 @@ use crate::TestEngine;
 use crate::one_pixel::{self, OnePixel};
 use arealight::plan::RadianceFormat;
 use arealight::{Light, Plane};
-use arealight_capi::{
-    AREALIGHT_ABI_VERSION, AREALIGHT_WHOLE_SIZE, Arealight, ArealightBuffer, ArealightFrame,
-    ArealightFunction, ArealightHost, ArealightImage, ArealightLight, ArealightMemory, ArealightPackedLights,
-    ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult, ArealightSetLayout,
-    ArealightUpload, arealight_create, arealight_destroy, arealight_last_error, arealight_pack_lights,
-    arealight_pass_create, arealight_pass_record, arealight_pass_record_pushed, arealight_pass_set_layout,
-    arealight_pass_write_set, arealight_table_bind_memory, arealight_table_memory, arealight_table_upload,
-};
 use arealight_engine::host::{Buffer, DescriptorPool, Image, Location, Usage};
 use arealight_vk::Resource;
 use ash::vk::{self, Handle as _};
 use glam::{Vec3, Vec4};
+use prelude::*;
 use std::cell::Cell;
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr::{null, null_mut};
+
+/// The C interface, all of whose names say that they are of it, and what most of its tests name.
+pub mod prelude {
+    pub use super::{
+        CLibrary, CLightBuffers, DeviceMemory, NO_ARRAYS, NO_FRAME, NO_LIGHT, c_image, c_lamp, good, no_host,
+        refused, set_layout, whole,
+    };
+    pub use arealight_capi::*;
+    pub use std::ffi::c_void;
+    pub use std::ptr::{null, null_mut};
+}
 
 /// Asserts that a call failed with `expected`, and a message that has `words`.
 #[track_caller]
@@ -86,6 +90,42 @@ pub const NO_FRAME: ArealightFrame = unsafe { std::mem::zeroed() };
 /// To ask for the sizes alone.
 // SAFETY: as above.
 pub const NO_ARRAYS: ArealightPackedLights = unsafe { std::mem::zeroed() };
+
+/// Lights in buffers, as a host in C packs them.
+pub struct CLightBuffers {
+    /// Of the lights.
+    pub summary: ArealightLightSummary,
+    buffers: [Option<Buffer>; 3],
+}
+
+impl CLightBuffers {
+    /// Lights about zero.
+    pub fn new(engine: &TestEngine, lights: &[ArealightLight]) -> Self {
+        let mut packed = NO_ARRAYS;
+        let pack = |packed: &mut ArealightPackedLights| {
+            let (count, origin) = (lights.len() as u32, [0.0_f64; 3]);
+            // SAFETY: the lights and the arrays are as they say.
+            good(unsafe { arealight_pack_lights(lights.as_ptr(), count, origin.as_ptr(), packed) });
+        };
+        // The sizes first
+        pack(&mut packed);
+        let mut arrays = [packed.lights_size, packed.vertices_size, packed.shapes_size]
+            .map(|size| vec![0_u32; size as usize / 4]);
+        [packed.lights, packed.vertices, packed.shapes] =
+            arrays.each_mut().map(|array| array.as_mut_ptr().cast());
+        pack(&mut packed);
+        let upload = |array: Vec<u32>| engine.host().storage_buffer("of C", &array).expect("memory");
+        let buffers = arrays.map(|array| (!array.is_empty()).then(|| upload(array)));
+        Self { summary: packed.summary, buffers }
+    }
+
+    /// The lights alone.
+    pub fn resources(&self) -> ArealightResources {
+        let [lights, light_vertices, shapes] =
+            self.buffers.each_ref().map(|buffer| buffer.as_ref().map_or_else(Default::default, whole));
+        ArealightResources { lights, light_vertices, shapes, ..ArealightResources::default() }
+    }
+}
 
 /// The library on a device of the tests.
 pub struct CLibrary<'a> {
@@ -219,24 +259,7 @@ impl<'a> CLibrary<'a> {
         light_textures: ArealightImage,
         camera: Vec3,
     ) -> Vec4 {
-        // Pack: the sizes first
-        let mut packed = NO_ARRAYS;
-        let pack = |packed: &mut ArealightPackedLights| {
-            let (count, origin) = (lights.len() as u32, [0.0_f64; 3]);
-            // SAFETY: the lights and the arrays are as they say.
-            good(unsafe { arealight_pack_lights(lights.as_ptr(), count, origin.as_ptr(), packed) });
-        };
-        pack(&mut packed);
-        let mut arrays = [packed.lights_size, packed.vertices_size, packed.shapes_size]
-            .map(|size| vec![0_u32; size as usize / 4]);
-        [packed.lights, packed.vertices, packed.shapes] =
-            arrays.each_mut().map(|array| array.as_mut_ptr().cast());
-        pack(&mut packed);
-        let host = self.engine.host();
-        let [lights_buffer, vertices, shapes] =
-            arrays.map(|array| host.storage_buffer("lights", &array).expect("memory"));
-
-        // Point a set at them, and shade
+        let packed = CLightBuffers::new(self.engine, lights);
         let format = RadianceFormat::Rgba32Float;
         let radiance = one_pixel::stored(self.engine, format);
         let planes = pixel.planes();
@@ -247,13 +270,10 @@ impl<'a> CLibrary<'a> {
             _ => ArealightImage::default(),
         };
         let resources = ArealightResources {
-            lights: whole(&lights_buffer),
-            light_vertices: whole(&vertices),
-            shapes: if packed.shapes_size > 0 { whole(&shapes) } else { ArealightBuffer::default() },
             planes: Plane::ALL.map(plane),
             light_textures,
             radiance: c_image(&radiance, Usage::COMPUTE_WRITE),
-            ..ArealightResources::default()
+            ..packed.resources()
         };
         let frame = ArealightFrame {
             width: 1,

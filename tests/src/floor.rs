@@ -9,7 +9,7 @@ use arealight::{Light, LightShape, LightTable, Plane, Planes, Quality};
 use arealight_engine::host::{Image, Usage};
 use arealight_oracle::material::{Material, Surface};
 use arealight_oracle::shading::{RelativeLight, ltc, shape_ltc_on, shape_seen_from};
-use arealight_vk::{Descriptors, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources};
+use arealight_vk::{Descriptors, ShadeFrame, ShadePassInfo, ShadeResources};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4, Vec3, Vec4};
 use std::sync::OnceLock;
@@ -105,8 +105,7 @@ impl<'a> Floor<'a> {
         let every_frame = TileOptions { least_quads: 0, ..TileOptions::default() };
         let (tiles, table_size) = (tiles.then_some(every_frame), self.engine.table_size());
         let info = ShadePassInfo { tiles, table_size, descriptors, ..options.into() };
-        // SAFETY: `run` waits, and the pass is dropped before the engine.
-        let pass = unsafe { ShadePass::new(self.engine.context(), info) }.unwrap();
+        let pass = self.engine.pass(info).unwrap();
         self.clear();
         run(self.engine, &pass, resources, SIZE, &[*frame], descriptors);
         stored_in(&self.radiance)

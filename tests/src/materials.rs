@@ -13,7 +13,8 @@ use arealight_vk::ash::vk::Format;
 use glam::{DVec3, Vec3, Vec4};
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
+/// The built-in table.
+pub static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 /// The ways to a surface's lobes: both horizons, two lobes, half vectors, formulas.
 pub fn lobe_qualities() -> [Quality; 5] {
@@ -121,6 +122,24 @@ pub fn step_within_rounding(quality: Quality, given: &EvalPoint) -> f64 {
 }
 
 impl TestEngine {
+    /// Answers to points under polygons beside their float64 twins.
+    pub fn beside_polygon_twin(
+        &self,
+        what: impl Into<String>,
+        quality: Quality,
+        points: &[EvalPoint],
+        bound: impl Fn(&EvalPoint) -> f64,
+    ) -> Comparison {
+        let answers = self.eval(points, quality).unwrap();
+        assert_eq!(answers.len(), points.len());
+        let mut comparison = Comparison::new(what);
+        for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
+            let place = || format!("point {index}: {given:?}");
+            comparison.add_color(*answer, polygon_twin(quality, given), bound(given), place);
+        }
+        comparison
+    }
+
     /// Compares points under polygons with their float64 twins. The twin's twin: of more than a tenth of them
     /// it notices a `change` of the surface.
     pub fn assert_follows_polygon_twin(

@@ -104,8 +104,7 @@ impl<'a> OnePixel<'a> {
         let (kept, own);
         let pass: &ShadePass = if let Some(module) = &self.module {
             let info = ShadePassInfo { module: Some(module.clone()), ..options.into() };
-            // SAFETY: `run` waits; the module is the test's.
-            own = unsafe { ShadePass::new(self.engine.context(), info) }.unwrap();
+            own = self.engine.pass(info).unwrap();
             &own
         } else {
             kept = self.engine.shade_pass(options).unwrap();

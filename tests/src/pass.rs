@@ -1,11 +1,30 @@
 //! What a host has, as small as can be: lights in buffers, images, and a pass over them.
 
 use crate::TestEngine;
-use arealight::{Light, PackedLights, Plane, Planes, SpecularLobes};
+use arealight::{Light, PackedLights, Plane, Planes};
 use arealight_engine::host::{Buffer, Image, ImageDescription, Location, Usage};
-use arealight_vk::{Bound, Descriptors, Resource, ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{
+    Bound, Descriptors, Error, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources,
+};
 use ash::vk;
 use glam::{DVec3, Vec3, Vec4};
+
+impl TestEngine {
+    /// A shade pass, or what is wrong with its options.
+    pub fn pass(&self, info: impl Into<ShadePassInfo>) -> Result<ShadePass, Error> {
+        // SAFETY: Tests wait for what they submit, and drop passes before the engine; modules are of kernels,
+        // and what is none is refused.
+        unsafe { ShadePass::new(self.context(), info) }
+    }
+}
+
+/// The field that a host's mistake is in.
+pub fn field(error: &Error) -> &'static str {
+    match error {
+        Error::InvalidArgument { field, .. } => field,
+        other => panic!("{other} names no field"),
+    }
+}
 
 /// Lights as a pass reads them.
 pub struct LightBuffers {
@@ -110,6 +129,16 @@ pub fn stored_in(image: &Image) -> Vec<Vec4> {
     texels.into_iter().map(Vec4::from_array).collect()
 }
 
+/// The lists of a pass with tiles, for images of `extent`, and the horizons of its lobes.
+pub fn tile_buffers(engine: &TestEngine, pass: &ShadePass, extent: [u32; 2]) -> Option<[Buffer; 2]> {
+    let lists = pass.tile_memory(extent)?;
+    let horizons = engine.lobe_horizons(pass.options().quality.specular_lobes);
+    Some([
+        engine.host().buffer("lists", lists.size, lists.usage, Location::Device).unwrap(),
+        engine.host().storage_buffer("horizons", horizons).unwrap(),
+    ])
+}
+
 /// Records frames over images of `extent` one after the other, and waits; with lists for tiles where the pass
 /// has them.
 pub fn run(
@@ -121,13 +150,7 @@ pub fn run(
     descriptors: Descriptors,
 ) {
     let host = engine.host();
-    let lists = pass.tile_memory(extent).map(|lists| {
-        let horizons = engine.lobe_horizons(SpecularLobes::default());
-        [
-            host.buffer("lists", lists.size, lists.usage, Location::Device).unwrap(),
-            host.storage_buffer("horizons", horizons).unwrap(),
-        ]
-    });
+    let lists = tile_buffers(engine, pass, extent);
     let [tile_lists, lobe_horizons] =
         [0, 1].map(|index: usize| lists.as_ref().map(|lists| Resource::buffer(lists[index].handle())));
     let resources = &ShadeResources { tile_lists, lobe_horizons, ..*resources };

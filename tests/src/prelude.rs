@@ -1,10 +1,11 @@
-//! What most of the GPU tests name.
+//! What several of the GPU tests name.
 
-pub use crate::floor::Floor;
-pub use crate::frame::{with_renderer, with_view};
-pub use crate::materials::under_polygon;
-pub use crate::one_pixel::{BEFORE, OnePixel, lamp};
-pub use crate::scenes::{lambert, scene_of, without_textures};
+pub use crate::floor::{Floor, lamps, pixels};
+pub use crate::frame::{reflected, reflected_by_tiles, scene, with_renderer, with_view};
+pub use crate::materials::{TABLE, lobe_qualities, polygon_twin, under_polygon, under_shapes};
+pub use crate::one_pixel::{BEFORE, OnePixel, lamp, material};
+pub use crate::pass::{LightBuffers, field, image, planes, radiance, read, reads, store, stored_in};
+pub use crate::scenes::{box_of, lambert, quad_light, scene_of, square, without_textures};
 pub use crate::{
     Cases, Comparison, Level, Random, TestEngine, glossy_surface, lambert_surface, point, rounding,
 };
@@ -14,11 +15,15 @@ pub use arealight::{
     Lobes, PackedLights, Plane, Planes, PyramidSize, Quality, SpecularLobes, TexturePart, TubeEnds,
 };
 pub use arealight_engine::host::{Image, ImageDescription, Usage};
-pub use arealight_engine::{EvalPoint, Reference, SceneRenderer};
+pub use arealight_engine::{EvalPoint, Reference, SceneRenderer, SourceImage, SourceTexels};
 pub use arealight_oracle::material::{Coat, Material, Surface};
-pub use arealight_oracle::shading::RelativeLight;
+pub use arealight_oracle::shading::{RelativeLight, ltc, ltc_on};
 pub use arealight_oracle::texture::Texture;
 pub use arealight_scene::{Camera, Scene, SceneBuffers};
-pub use arealight_vk::{Descriptors, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources};
+pub use arealight_vk::{
+    Descriptors, Error, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources, TableFormat,
+};
 pub use ash::vk;
 pub use glam::{DMat3, DQuat, DVec2, DVec3, Vec3, Vec4};
+pub use std::f64::consts::TAU;
+pub use std::sync::Arc;

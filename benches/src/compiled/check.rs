@@ -41,8 +41,7 @@ pub struct Check {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the file's numbers of {family} are by {file}, and this is {here}: another version of the compiler makes \
-    other code, so that \
-     they can't be compared"
+    other code, so that they can't be compared"
 )]
 pub struct OtherDriver {
     family: String,

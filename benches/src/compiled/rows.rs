@@ -125,50 +125,40 @@ fn quad_rows() -> Vec<Row> {
     let formula = Quality { lobes: Lobes::Formula, ..exact };
     let everything = Quality { horizon: Horizon::Both, specular_lobes: SpecularLobes::Two, ..difference };
     vec![
-        quads("quads", "exact", LOBES, exact),
-        quads("quads", "both horizons", LOBES, both),
-        quads("quads", "two specular lobes", LOBES, two_lobes),
-        quads("quads", "half vectors", LOBES, half_vectors),
-        quads("quads", "difference", LOBES, difference),
-        quads("quads", "formula", LOBES, formula),
-        quads("quads", "difference, both horizons, two specular lobes", LOBES, everything),
+        quads("exact", LOBES, exact),
+        quads("both horizons", LOBES, both),
+        quads("two specular lobes", LOBES, two_lobes),
+        quads("half vectors", LOBES, half_vectors),
+        quads("difference", LOBES, difference),
+        quads("formula", LOBES, formula),
+        quads("difference, both horizons, two specular lobes", LOBES, everything),
         // Quads, by lobe
-        quads("quads", "exact, diffuse alone", Effects::DIFFUSE, exact),
-        quads("quads", "exact, specular alone", Effects::GLOSSY, exact),
+        quads("exact, diffuse alone", Effects::DIFFUSE, exact),
+        quads("exact, specular alone", Effects::GLOSSY, exact),
         // Quads and nothing else, with more asked of them or of the surface
-        quads("two-sided quads", "exact", LOBES | Effects::TWO_SIDED, exact),
-        quads("quads", "exact, F0 from an image", LOBES | Effects::SPECULAR_INPUT, exact),
+        shade("two-sided quads", "exact", LOBES | Effects::TWO_SIDED, true, exact),
+        quads("exact, F0 from an image", LOBES | Effects::SPECULAR_INPUT, exact),
         // Quads on surfaces whose layers share light
-        quads("quads", "exact, coupled", LOBES | Effects::COUPLED, exact),
-        quads("quads", "both horizons, coupled", LOBES | Effects::COUPLED, both),
-        quads(
-            "quads",
-            "exact, coupled by albedo",
-            LOBES | Effects::COUPLED | Effects::COUPLED_BY_ALBEDO,
-            exact,
-        ),
-        quads("quads", "exact, all layers by albedo", LOBES | Effects::COAT | Effects::MODEL, exact),
+        quads("exact, coupled", LOBES | Effects::COUPLED, exact),
+        quads("both horizons, coupled", LOBES | Effects::COUPLED, both),
+        quads("exact, coupled by albedo", LOBES | Effects::COUPLED | Effects::COUPLED_BY_ALBEDO, exact),
+        quads("exact, all layers by albedo", LOBES | Effects::COAT | Effects::MODEL, exact),
         // Quads on coated surfaces
-        quads("quads", "exact, coat", LOBES | Effects::COAT, exact),
-        quads("quads", "exact, coat with its own normal", LOBES | COATS, exact),
-        quads("quads", "both horizons, coat with its own normal", LOBES | COATS, both),
-        quads("quads", "half vectors, coat", LOBES | Effects::COAT, half_vectors),
-        quads("quads", "exact, sheen", LOBES | Effects::SHEEN, exact),
-        quads("quads", "two specular lobes, sheen", LOBES | Effects::SHEEN, two_lobes),
-        quads("quads", "exact, anisotropy", LOBES | Effects::ANISOTROPY, exact),
-        quads("quads", "half vectors, anisotropy", LOBES | Effects::ANISOTROPY, half_vectors),
-        quads("quads", "exact, thin film", LOBES | Effects::THIN_FILM, exact),
-        quads("quads", "half vectors, thin film", LOBES | Effects::THIN_FILM, half_vectors),
-        quads("quads", "exact, multiple scattering", LOBES | Effects::MULTIPLE_SCATTERING, exact),
-        quads("quads", "exact, linked", LOBES | Effects::LINKED, exact),
-        quads("quads", "exact, rough diffuse", LOBES | Effects::DIFFUSE_ROUGHNESS, exact),
-        quads(
-            "quads",
-            "exact, transmission (a pass of its own)",
-            Effects::DIFFUSE | Effects::TRANSMISSION,
-            exact,
-        ),
-        quads("quads", "exact, glass (a pass of its own)", Effects::GLOSSY | Effects::TRANSMISSION, exact),
+        quads("exact, coat", LOBES | Effects::COAT, exact),
+        quads("exact, coat with its own normal", LOBES | COATS, exact),
+        quads("both horizons, coat with its own normal", LOBES | COATS, both),
+        quads("half vectors, coat", LOBES | Effects::COAT, half_vectors),
+        quads("exact, sheen", LOBES | Effects::SHEEN, exact),
+        quads("two specular lobes, sheen", LOBES | Effects::SHEEN, two_lobes),
+        quads("exact, anisotropy", LOBES | Effects::ANISOTROPY, exact),
+        quads("half vectors, anisotropy", LOBES | Effects::ANISOTROPY, half_vectors),
+        quads("exact, thin film", LOBES | Effects::THIN_FILM, exact),
+        quads("half vectors, thin film", LOBES | Effects::THIN_FILM, half_vectors),
+        quads("exact, multiple scattering", LOBES | Effects::MULTIPLE_SCATTERING, exact),
+        quads("exact, linked", LOBES | Effects::LINKED, exact),
+        quads("exact, rough diffuse", LOBES | Effects::DIFFUSE_ROUGHNESS, exact),
+        quads("exact, transmission (a pass of its own)", Effects::DIFFUSE | Effects::TRANSMISSION, exact),
+        quads("exact, glass (a pass of its own)", Effects::GLOSSY | Effects::TRANSMISSION, exact),
     ]
 }
 
@@ -208,13 +198,12 @@ fn other_rows() -> Vec<Row> {
         shade("every kind", "exact", LOBES | every_kind, true, exact),
         shade("every kind", "exact, coat with its own normal", LOBES | COATS | every_kind, true, exact),
         // What a host's frames and images are
-        frames("quads", "exact, stencil test", ShadeOptions { stencil: true, ..ShadeOptions::default() }),
+        frames("exact, stencil test", ShadeOptions { stencil: true, ..ShadeOptions::default() }),
         frames(
-            "quads",
             "exact, lights counted by the GPU",
             ShadeOptions { light_counts: true, ..ShadeOptions::default() },
         ),
-        frames("quads", "exact, 4 samples a pixel", ShadeOptions { samples: 4, ..ShadeOptions::default() }),
+        frames("exact, 4 samples a pixel", ShadeOptions { samples: 4, ..ShadeOptions::default() }),
         // Tiles
         classify("quads", "no culling", none, 0.0),
         classify("quads", "culling", none, 0.01),
@@ -276,8 +265,8 @@ pub(crate) fn path_cost(
 }
 
 /// The shade pass where all lights are quads.
-fn quads(lights: &'static str, level: &'static str, effects: Effects, quality: Quality) -> Row {
-    shade(lights, level, effects, true, quality)
+fn quads(level: &'static str, effects: Effects, quality: Quality) -> Row {
+    shade("quads", level, effects, true, quality)
 }
 
 /// The shade pass of both lobes where no light is a quad without a texture.
@@ -293,10 +282,10 @@ fn shade(lights: &'static str, level: &'static str, effects: Effects, quads: boo
 }
 
 /// The shade pass of quads with other options.
-fn frames(lights: &'static str, level: &'static str, options: ShadeOptions) -> Row {
+fn frames(level: &'static str, options: ShadeOptions) -> Row {
     let frame = LightSummary { quad_count: 1, ..LightSummary::default() };
     let specialization = plan::shade_specialization(options, frame);
-    row(&kernels::SHADE, lights, level, Some(YARDSTICK), specialization)
+    row(&kernels::SHADE, "quads", level, Some(YARDSTICK), specialization)
 }
 
 /// A kernel's module as the recorder has it for this specialisation.

@@ -115,10 +115,8 @@ impl Ladder {
         };
         format!(
             "Errors are over the mean of the truth, the integral of the true BRDF, at {} points. Times are \
-            of a frame of {} pixels \
-             and {} lights, over its lights and megapixels ({clock}); medians of {} rounds, with quartiles. \
-             Ratios are to {} \
-             on the same device. {READS}",
+            of a frame of {} pixels and {} lights, over its lights and megapixels ({clock}); medians of {} \
+            rounds, with quartiles. Ratios are to {} on the same device. {READS}",
             self.points,
             self.pixels,
             super::points::LIGHTS,

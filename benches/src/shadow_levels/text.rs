@@ -6,15 +6,12 @@ use crate::table::Table;
 use std::fmt::Write as _;
 
 /// What the tables' columns are.
-const MEASURES: &str = "\
-*S* is the part of a pixel's unshadowed light that arrives, in luminance; its errors are those of lit pixels \
-times 100, the root of their mean \
-square over all of them and over those in a penumbra, and their mean (above 0 too much arrives). The error \
-of the radiance is the root of its \
-mean square over its mean. The truth is the mean of two Monte Carlo references of the true BRDF, each with \
-and without shadows by the same \
-samples; their noise, measured by their difference, is taken out of the squares. A history is of 16 frames \
-at rest.";
+const MEASURES: &str = "*S* is the part of a pixel's unshadowed light that arrives, in luminance; its errors \
+are those of lit pixels times 100, the root of their mean square over all of them and over those in a \
+penumbra, and their mean (above 0 too much arrives). The error of the radiance is the root of its mean \
+square over its mean. The truth is the mean of two Monte Carlo references of the true BRDF, each with and \
+without shadows by the same samples; their noise, measured by their difference, is taken out of the squares. \
+A history is of 16 frames at rest.";
 
 const HEADS: &str = "level | S, RMSE x 100 | in penumbra | mean | radiance, RMSE / mean % | shade, ms | rays, ms | \
     history, ms | filter, ms | sum, ms | million rays/s";
@@ -50,9 +47,8 @@ impl SceneResult {
             [*penumbra, noise.rmse, noise.penumbra_rmse].map(|part| 100.0 * part);
         format!(
             "{lights} {many}, {blockers} triangles that block; {penumbra:.0} % of the lit pixels are in a \
-            penumbra. Each reference has \
-             {samples} samples a pixel of each light; the noise of their S is {noise_all:.2}, in penumbra \
-             {noise:.2}."
+            penumbra. Each reference has {samples} samples a pixel of each light; the noise of their S is \
+            {noise_all:.2}, in penumbra {noise:.2}."
         )
     }
 }

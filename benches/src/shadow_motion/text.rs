@@ -5,16 +5,13 @@ use crate::table::Table;
 use std::fmt::Write as _;
 
 /// What the tables' columns are.
-const MEASURES: &str = "\
-Errors of *S* times 100: the root of the mean square over lit pixels of the judged frames; over those in a \
-penumbra; over those whose surface the frame \
-before did not see; and of the worst frame. The lag is how many frames shadows are behind, where the light \
-alone moves. The truth of each frame is the mean of \
-many frames of four rays as they are, with the same lobes; its noise, known from its halves, is taken out of \
-the squares. At `camera` the camera goes about the \
-scene by 1 degree a frame, at `light` the light moves by 4 cm and turns by 1 degree a frame, at `both` they \
-do so at once. At `fast light` the light goes the \
-same way four times as fast, in a quarter of the frames.";
+const MEASURES: &str = "Errors of *S* times 100: the root of the mean square over lit pixels of the judged \
+frames; over those in a penumbra; over those whose surface the frame before did not see; and of the worst \
+frame. The lag is how many frames shadows are behind, where the light alone moves. The truth of each frame \
+is the mean of many frames of four rays as they are, with the same lobes; its noise, known from its halves, \
+is taken out of the squares. At `camera` the camera goes about the scene by 1 degree a frame, at `light` the \
+light moves by 4 cm and turns by 1 degree a frame, at `both` they do so at once. At `fast light` the light \
+goes the same way four times as fast, in a quarter of the frames.";
 
 fn cells(film: &FilmErrors) -> Vec<String> {
     let number = |error: f64| format!("{:.2}", 100.0 * error);
@@ -44,8 +41,7 @@ impl ShadowMotion {
             self.scenes.iter().map(|scene| format!("{:.2}", 100.0 * scene.noise)).collect();
         format!(
             "Films of {frames} frames of {width} x {height} pixels, of which {judged} were judged, from \
-            frame {FIRST} on. The noise of \
-             the truths was {}.",
+            frame {FIRST} on. The noise of the truths was {}.",
             noise.join(", ")
         )
     }

@@ -16,8 +16,7 @@ pub const AXES: &str =
     "x: roughness = x / (size - 1), alpha = roughness^2; y: sqrt(1 - cos theta_view) = y / (size - 1)";
 /// The attribute `arealight.frame`.
 pub const FRAME: &str = "inverse matrix; rows in cosine space; columns (cos t, 0, sin t), (0, 1, 0), (-sin \
-t, 0, cos t) \
-    in the surface frame, for a view (sin t, 0, cos t)";
+t, 0, cos t) in the surface frame, for a view (sin t, 0, cos t)";
 /// The attribute `arealight.normalisation`.
 pub const NORMALISATION: &str = "R G B A = q00 q02 q20 q22 of [q00 0 q02; 0 1 0; alpha*q20 0 alpha*q22]; \
     magnitude R G = integral f cos, integral f cos (1 - cos theta_vh)^5";

@@ -24,8 +24,7 @@ pub enum ReadError {
     /// An attribute is missing: the file is some other image.
     #[error(
         "attribute `{attribute}` is missing; a light table has it (is this another image? Tables in the \
-        convention of \
-         Heitz et al. 2016 are two images: convert them by `arealight table convert`)"
+        convention of Heitz et al. 2016 are two images: convert them by `arealight table convert`)"
     )]
     MissingAttribute {
         /// The attribute.

@@ -190,8 +190,7 @@ pub enum LightFault {
     /// A texture coordinate is NaN or outside of the image.
     #[error(
         "texture: uvs[{index}]: {value} is not within 0 to 1; load the part of the repeated image that the \
-        light shows \
-         into a layer of its own"
+        light shows into a layer of its own"
     )]
     TextureOutside {
         /// The vertex.

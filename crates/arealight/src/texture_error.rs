@@ -58,8 +58,7 @@ pub enum TextureError {
     /// The part is empty, or so many repeats that reading it would take seconds.
     #[error(
         "size: {size} of {width} x {height} texels must be positive and cover at most {} texels a side; load \
-        fewer \
-         repeats",
+        fewer repeats",
         MOST_TEXELS
     )]
     Size {

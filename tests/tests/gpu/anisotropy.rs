@@ -2,10 +2,7 @@
 //! and where it is hard.
 
 use arealight_oracle::material::Anisotropy;
-use arealight_tests::materials::lobe_qualities;
-use arealight_tests::one_pixel::material;
 use arealight_tests::prelude::*;
-use std::f64::consts::TAU;
 
 const COUNT: usize = 2000;
 

@@ -2,12 +2,11 @@
 
 use arealight::plan::{MediumOptions, ShadowFilter};
 use arealight::{Blockers, TexturePart};
-use arealight_tests::floor::{SIZE, lamps, pixels, position};
-use arealight_tests::pass::{image, read};
+use arealight_tests::floor::{SIZE, position};
 use arealight_tests::prelude::*;
 use arealight_vk::gpu_allocator::{AllocationSizes, AllocatorDebugSettings, vulkan};
-use arealight_vk::{AreaLights, AreaLightsInfo, Error, MediumFrame, TextureUpdate};
-use std::sync::{Arc, Mutex};
+use arealight_vk::{AreaLights, AreaLightsInfo, MediumFrame, TextureUpdate};
+use std::sync::Mutex;
 
 /// Does something with area lights on the engine's device, and sees that all memory was given back.
 fn with_area_lights(engine: &TestEngine, info: &AreaLightsInfo, act: impl FnOnce(&mut AreaLights)) {
@@ -228,10 +227,7 @@ fn mistakes_are_named() {
     let Some(engine) = TestEngine::new() else { return };
     let floor = Floor::new(&engine, &[lamp()]);
     let commands = vk::CommandBuffer::null();
-    let field = |error: Result<(), Error>| match error {
-        Err(Error::InvalidArgument { field, .. }) => field,
-        other => panic!("{other:?}"),
-    };
+    let field = |result: Result<(), Error>| field(&result.unwrap_err());
     with_area_lights(&engine, &AreaLightsInfo::default(), |area_lights| {
         // SAFETY: Nothing is recorded where an error is returned.
         let mut shade = |place, view: &ShadeFrame, g_buffer: &ShadeResources| unsafe {

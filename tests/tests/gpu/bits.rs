@@ -2,7 +2,6 @@
 //! without the checks of the CPU side in between.
 
 use arealight::gpu::GpuLight;
-use arealight_engine::{SourceImage, SourceTexels};
 use arealight_tests::Numbers;
 use arealight_tests::prelude::*;
 use arealight_tool_kernels::gpu::GpuCase;

@@ -1,18 +1,7 @@
 //! The C library as a host uses and misuses it: each mistake has a result and a message that names it.
 
-use arealight_capi::{
-    AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_SPECULAR_INPUT, Arealight,
-    ArealightFrame, ArealightHost, ArealightLightSummary, ArealightModule, ArealightPass,
-    ArealightPassOptions, ArealightResources, ArealightResult, ArealightTable, ArealightTileMemory,
-    ArealightUpload, arealight_abi_version, arealight_create, arealight_destroy, arealight_lobe_horizons,
-    arealight_pass_create, arealight_pass_destroy, arealight_pass_prepare, arealight_pass_record,
-    arealight_pass_set_layout, arealight_pass_tile_memory, arealight_pass_write_set,
-    arealight_table_bind_memory, arealight_table_memory, arealight_table_upload,
-};
-use arealight_tests::c_library::{CLibrary, NO_FRAME, good, no_host, refused, set_layout};
+use arealight_tests::c_library::prelude::*;
 use arealight_tests::prelude::*;
-use std::ffi::c_void;
-use std::ptr::{null, null_mut};
 
 #[test]
 fn hosts_that_are_none_are_refused_by_field() {
@@ -131,7 +120,7 @@ fn calls_out_of_order_are_refused() {
         refused(record(commands, 8, &masked), ErrorArgument, words);
         let seeded = ArealightFrame { seed: 7, ..dark_frame(8) };
         refused(record(commands, 8, &seeded), ErrorArgument, "frame.seed: without shadow rays");
-        let lists = arealight_capi::ArealightBuffer { buffer: 1, offset: 0, range: 4 };
+        let lists = ArealightBuffer { buffer: 1, offset: 0, range: 4 };
         let listed = ArealightFrame { tile_lists: lists, ..dark_frame(8) };
         refused(record(commands, 8, &listed), ErrorArgument, "frame.tile_lists: without tiles");
         let moved = ArealightFrame { light_offsets: [0, 0, 256], ..dark_frame(8) };

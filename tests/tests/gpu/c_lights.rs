@@ -1,15 +1,8 @@
 //! Lights by the C library: how they are packed and how far they reach, and what is refused by name.
 
 use arealight::{Opening, Profile};
-use arealight_capi::{
-    AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TWO_SIDED, AREALIGHT_LIGHT_DISK, AREALIGHT_LIGHT_MESH,
-    AREALIGHT_LIGHT_SPHERE, AREALIGHT_LIGHT_TUBE, AREALIGHT_SPECULAR_LOBES_ONE, ArealightLight,
-    ArealightLightSummary, ArealightPackedLights, ArealightReach, ArealightResult, arealight_light_reach,
-    arealight_lobe_density, arealight_pack_lights,
-};
-use arealight_tests::c_library::{CLibrary, NO_ARRAYS, NO_LIGHT, good, refused};
+use arealight_tests::c_library::prelude::*;
 use arealight_tests::prelude::*;
-use std::ptr::{null, null_mut};
 
 const TRIANGLE: [f64; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
 

@@ -2,26 +2,10 @@
 //! several faces, and a G-buffer of the host's own, with a table whose first upload was never run.
 
 use arealight::{LightFault, TexturePart, Wrap};
-use arealight_capi::{
-    AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, AREALIGHT_DESCRIPTORS_PUSHED, AREALIGHT_EFFECT_COAT,
-    AREALIGHT_EFFECT_COAT_NORMAL, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_LIGHT_MESH, AREALIGHT_WRAP_MIRROR,
-    ArealightFrame, ArealightImage, ArealightLight, ArealightMemory, ArealightPassOptions,
-    ArealightResources, ArealightResult, ArealightSetLayout, ArealightTextureNeeds, ArealightTextureOptions,
-    ArealightTextureSetup, ArealightTextureUpdate, ArealightTextures, arealight_pass_destroy,
-    arealight_pass_record_pushed, arealight_textures_check_lights, arealight_textures_create,
-    arealight_textures_destroy, arealight_textures_image, arealight_textures_needs, arealight_textures_setup,
-    arealight_textures_update, arealight_textures_write_source_set,
-};
 use arealight_engine::host::{DescriptorPool, HostError};
-use arealight_engine::{SourceImage, SourceTexels};
-use arealight_tests::c_library::{
-    CLibrary, DeviceMemory, NO_FRAME, NO_LIGHT, c_image, good, refused, set_layout,
-};
-use arealight_tests::pass::image;
+use arealight_tests::c_library::prelude::*;
 use arealight_tests::prelude::*;
 use ash::vk::{self, Handle as _};
-use std::ffi::c_void;
-use std::ptr::{null, null_mut};
 
 const CAMERA: Vec3 = Vec3::new(0.0, -1.0, 1.0);
 
@@ -130,16 +114,6 @@ struct CTextures<'a> {
     needs: ArealightTextureNeeds,
 }
 
-const NO_SET: ArealightSetLayout = ArealightSetLayout {
-    layout: 0,
-    sampled_images: 0,
-    combined_image_samplers: 0,
-    storage_images: 0,
-    storage_buffers: 0,
-    dynamic_storage_buffers: 0,
-    reserved: 0,
-};
-
 impl<'a> CTextures<'a> {
     fn new(engine: &'a TestEngine, library: &'a CLibrary<'a>) -> Self {
         let options = ArealightTextureOptions { side: 128, layers: 2 };
@@ -148,8 +122,8 @@ impl<'a> CTextures<'a> {
             ArealightMemory { size: 0, alignment: 0, staging_size: 0, memory_type_bits: 0, reserved: 0 };
         let mut needs = ArealightTextureNeeds {
             memory,
-            level_set: NO_SET,
-            source_set: NO_SET,
+            level_set: ArealightSetLayout::default(),
+            source_set: ArealightSetLayout::default(),
             level_set_count: 0,
             reserved: 0,
         };

@@ -1,28 +1,11 @@
 //! Shadows of a host in C are the recorder's, to the last bit; its media are what is known of them.
 
 use arealight::Blockers;
-use arealight_capi::{
-    AREALIGHT_SHADOW_FILTER_GATHER, ArealightBlockerArrays, ArealightBuffer, ArealightFrame, ArealightImage,
-    ArealightMediumFrame, ArealightMediumOptions, ArealightMediumResources, ArealightModule, ArealightPass,
-    ArealightPassOptions, ArealightResources, ArealightResult, ArealightSetLayout, ArealightShadowFrame,
-    ArealightShadowOptions, ArealightShadowPass, ArealightShadowResources, arealight_blockers_create,
-    arealight_blockers_destroy, arealight_blockers_read, arealight_medium_pass_create,
-    arealight_medium_pass_destroy, arealight_medium_pass_prepare, arealight_medium_pass_record,
-    arealight_medium_pass_set_layout, arealight_medium_pass_write_set, arealight_pack_lights,
-    arealight_pass_create, arealight_pass_destroy, arealight_pass_record, arealight_pass_shadow_picks_size,
-    arealight_pass_write_set, arealight_shadow_pass_create, arealight_shadow_pass_destroy,
-    arealight_shadow_pass_prepare, arealight_shadow_pass_record, arealight_shadow_pass_set_layout,
-    arealight_shadow_pass_write_set,
-};
-use arealight_tests::c_library::{
-    CLibrary, DeviceMemory, NO_ARRAYS, NO_FRAME, c_image, c_lamp, good, refused, set_layout, whole,
-};
+use arealight_tests::c_library::prelude::*;
 use arealight_tests::prelude::*;
-use arealight_tests::shadow_patch::{PatchPasses, SIDE, ShadowPatch, filled, stored};
-use arealight_vk::{MediumPass, ShadowPass};
+use arealight_tests::shadow_patch::{PatchPasses, SIDE, ShadowPatch, shadow_image};
+use arealight_vk::MediumPass;
 use ash::vk::{self, Handle as _};
-use std::ffi::c_void;
-use std::ptr::{null, null_mut};
 
 /// A wall before one half of the lamp.
 fn patch() -> ShadowPatch {
@@ -101,18 +84,8 @@ impl<'a> CPasses<'a> {
     fn run(&self, patch: &ShadowPatch, seed: u32, medium: Option<(u32, &ArealightMediumFrame)>) -> Vec<Vec4> {
         let (engine, host) = (self.engine, self.engine.host());
         let lights: Vec<_> = patch.lights.iter().map(c_lamp).collect();
-        let mut packed = NO_ARRAYS;
-        // SAFETY: the lights and the arrays are as they say, here and below.
-        let pack = |packed: &mut _| unsafe {
-            good(arealight_pack_lights(lights.as_ptr(), lights.len() as u32, [0.0; 3].as_ptr(), packed));
-        };
-        pack(&mut packed);
-        let mut arrays =
-            [packed.lights_size, packed.vertices_size].map(|size| vec![0_u32; size as usize / 4]);
-        [packed.lights, packed.vertices] = arrays.each_mut().map(|array| array.as_mut_ptr().cast());
-        pack(&mut packed);
+        let lights = CLightBuffers::new(engine, &lights);
         let upload = |array: &Vec<u32>| host.storage_buffer("of C", array).unwrap();
-        let [lights, vertices] = arrays.each_ref().map(upload);
         let [nodes, triangles] = blocker_arrays(&patch.blockers, None).each_ref().map(upload);
         let mut picks_size = 0;
         // SAFETY: the pointers are valid.
@@ -120,23 +93,22 @@ impl<'a> CPasses<'a> {
         let picks = upload(&vec![0; picks_size as usize / 4]);
 
         let material = &patch.material;
-        let inputs = [
-            filled(engine, [0.0, 0.0, 0.0, 1.0]),
-            filled(engine, [0.0, 0.0, 1.0, material.roughness]),
-            filled(engine, material.base_color.extend(material.metalness).to_array()),
-        ];
-        let [radiance, shadowed] = [(); 2].map(|()| stored(engine, vk::Format::R32G32B32A32_SFLOAT));
-        let shadow = stored(engine, ShadowPass::SHADOW_FORMAT);
+        let inputs = planes(engine, [SIDE; 2], &|plane, _| match plane {
+            Plane::Position => Some(Vec4::W),
+            Plane::Normal => Some(Vec3::Z.extend(material.roughness)),
+            Plane::BaseColor => Some(material.base_color.extend(material.metalness)),
+            _ => None,
+        });
+        let [unshadowed, shadowed] = [(); 2].map(|()| radiance(engine, [SIDE; 2], Vec4::NAN));
+        let shadow = shadow_image(engine);
         let resources = ArealightResources {
-            lights: whole(&lights),
-            light_vertices: whole(&vertices),
             planes: Plane::ALL.map(|plane| {
                 let image_of = |input| c_image(input, Usage::COMPUTE_READ);
-                inputs.get(plane as usize).map_or_else(ArealightImage::default, image_of)
+                inputs[plane].as_ref().map_or_else(ArealightImage::default, image_of)
             }),
-            radiance: c_image(&radiance, Usage::COMPUTE_WRITE),
+            radiance: c_image(&unshadowed, Usage::COMPUTE_WRITE),
             shadow_picks: whole(&picks),
-            ..ArealightResources::default()
+            ..lights.resources()
         };
         let of_shadows = ArealightShadowResources {
             shadow: c_image(&shadow, Usage::COMPUTE_WRITE),
@@ -149,7 +121,7 @@ impl<'a> CPasses<'a> {
             width: SIDE,
             height: SIDE,
             camera: patch.view.to_array(),
-            lights: packed.summary,
+            lights: lights.summary,
             seed,
             position_from_clip: FROM_CLIP.as_ptr(),
             ..NO_FRAME
@@ -201,9 +173,7 @@ impl<'a> CPasses<'a> {
         if let Some(medium) = medium {
             self.put_before(&resources, &of_shadows, &frame, medium);
         }
-        let seen = if medium.is_some() { radiance } else { shadowed };
-        let texels: Vec<[f32; 4]> = seen.download(Usage::COMPUTE_WRITE).unwrap();
-        texels.into_iter().map(Vec4::from_array).collect()
+        stored_in(if medium.is_some() { &unshadowed } else { &shadowed })
     }
 }
 

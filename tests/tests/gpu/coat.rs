@@ -2,8 +2,8 @@
 
 use arealight::MIN_ALPHA;
 use arealight_oracle::frame::SurfaceFrame;
-use arealight_tests::materials::{changed, lobe_qualities, points_of, under_shapes};
-use arealight_tests::one_pixel::{LAYOUTS, material};
+use arealight_tests::materials::{changed, points_of};
+use arealight_tests::one_pixel::LAYOUTS;
 use arealight_tests::prelude::*;
 use arealight_vk::ash::vk::Format;
 
@@ -12,7 +12,7 @@ const COUNT: usize = 2000;
 /// A metal or a dielectric below a coat whose normal is tilted by up to `tilt` from z.
 fn coated(random: &mut Random, tilt: f64) -> Surface {
     let (sin, cos) = random.between(0.0, tilt).sin_cos();
-    let (y, x) = random.between(0.0, std::f64::consts::TAU).sin_cos();
+    let (y, x) = random.between(0.0, TAU).sin_cos();
     let normal = DVec3::new(x * sin, y * sin, cos) * random.between(0.5, 2.0);
     Surface {
         diffuse_albedo: DVec3::new(0.8, 0.3, 0.1),

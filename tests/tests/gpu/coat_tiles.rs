@@ -1,7 +1,6 @@
 //! Tiles of coated surfaces: a coat has a horizon of its own, and takes light from what is below.
 
 use arealight_scene::{Image, SceneMaterial, Texture, Wrap};
-use arealight_tests::frame::{reflected, reflected_by_tiles, scene};
 use arealight_tests::prelude::*;
 
 const SIZE: [u32; 2] = [61, 37];

@@ -2,9 +2,8 @@
 //! and where they are hard.
 
 use arealight_oracle::material::Interface;
-use arealight_tests::materials::{changed, lobe_qualities, points_of, under_shapes};
+use arealight_tests::materials::{changed, points_of};
 use arealight_tests::prelude::*;
-use arealight_tests::scenes::{quad_light, square};
 
 const COUNT: usize = 2000;
 

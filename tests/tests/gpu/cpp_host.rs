@@ -2,9 +2,7 @@
 //! Rust, to the last bit.
 
 use arealight_capi::AREALIGHT_ABI_VERSION;
-use arealight_tests::pass::{
-    LightBuffers, image, planes, radiance, read, reads, run as shade_by, store, stored_in, texels,
-};
+use arealight_tests::pass::{run as shade_by, texels};
 use arealight_tests::prelude::*;
 
 use std::path::{Path, PathBuf};
@@ -141,8 +139,7 @@ fn draw(engine: &TestEngine, lights: &[Light]) -> Vec<[f32; 3]> {
         radiance: store(&radiance),
         ..lights.resources(engine)
     };
-    // SAFETY: `shade_by` waits, and the pass is dropped before the engine.
-    let pass = unsafe { ShadePass::new(engine.context(), ShadeOptions::default()) }.unwrap();
+    let pass = engine.pass(ShadeOptions::default()).unwrap();
     shade_by(engine, &pass, &resources, SIZE, &[lights.frame(SIZE, Vec3::ZERO)], Descriptors::Sets);
     stored_in(&radiance).into_iter().map(|texel| texel.truncate().to_array()).collect()
 }

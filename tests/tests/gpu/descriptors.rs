@@ -1,9 +1,7 @@
 //! How passes get at a host's resources: sets, sets with offsets of rings of lights, and pushed descriptors.
 //! The picture is the same.
 
-use crate::recorder::field;
 use arealight_engine::host::{Buffer, Host};
-use arealight_tests::floor::lamps;
 use arealight_tests::prelude::*;
 use arealight_vk::Bound;
 
@@ -85,7 +83,7 @@ fn pushed_resources_shade_as_sets_do() {
     // SAFETY: Nothing is recorded where an error is returned.
     unsafe {
         let info = ShadePassInfo { descriptors: Descriptors::Pushed, ..options.into() };
-        let pass = ShadePass::new(engine.context(), info).unwrap();
+        let pass = engine.pass(info).unwrap();
         let null = vk::CommandBuffer::null();
         let missed = pass.record(null, pushed(&without), &frame).unwrap_err();
         assert_eq!(field(&missed), "shapes");
@@ -100,11 +98,7 @@ fn ways_of_binding_are_not_mixed_up() {
     let Some(engine) = TestEngine::new() else { return };
     let floor = Floor::new(&engine, &lamps());
     let (null, set) = (vk::CommandBuffer::null(), vk::DescriptorSet::null());
-    let made = |descriptors| {
-        let info = ShadePassInfo { descriptors, ..ShadePassInfo::default() };
-        // SAFETY: It is dropped before the engine, and nothing is recorded.
-        unsafe { ShadePass::new(engine.context(), info) }.unwrap()
-    };
+    let made = |descriptors| engine.pass(ShadePassInfo { descriptors, ..ShadePassInfo::default() }).unwrap();
     let moved = ShadeFrame { light_offsets: [0, 1 << 16, 0], ..floor.frame() };
     // SAFETY: Nothing is recorded or written where an error is returned.
     unsafe {

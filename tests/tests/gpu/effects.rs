@@ -3,7 +3,7 @@
 
 use arealight::kernels::SHADE;
 use arealight::plan::shade_specialization;
-use arealight_tests::frame::{bits, scene};
+use arealight_tests::frame::bits;
 use arealight_tests::prelude::*;
 
 const SIZE: [u32; 2] = [64, 36];

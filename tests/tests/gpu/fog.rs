@@ -11,7 +11,6 @@ use arealight_tests::kernel::Function;
 use arealight_tests::prelude::*;
 use std::collections::HashMap;
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 const CASES: &str = include_str!("../../data/reference/media.json");
 const TRUTH: &str = include_str!("../../data/reference/media-truth.json");

@@ -3,7 +3,6 @@
 use arealight::plan::MediumOptions;
 use arealight::{Opening, Profile};
 use arealight_engine::Fog;
-use arealight_tests::frame::scene;
 use arealight_tests::prelude::*;
 
 const SIZE: [u32; 2] = [64, 36];

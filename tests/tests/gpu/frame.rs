@@ -3,7 +3,6 @@
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::truth;
 use arealight_oracle::thin_film::ThinFilm;
-use arealight_tests::frame::scene;
 use arealight_tests::prelude::*;
 use glam::camera::rh::proj::vulkan;
 use half::f16;

@@ -3,7 +3,6 @@
 
 use arealight_engine::Kept;
 use arealight_engine::host::DescriptorPool;
-use arealight_tests::pass::{LightBuffers, planes, radiance, reads, store};
 use arealight_tests::prelude::*;
 
 const CAMERA: Vec3 = Vec3::new(0.0, -1.0, 1.0);
@@ -222,8 +221,7 @@ fn threads_record_with_one_pass_and_make_its_pipelines_at_once() {
         images.picture()
     });
 
-    // SAFETY: it is dropped when nothing is pending.
-    let pass = &unsafe { ShadePass::new(engine.context(), ShadeOptions::default()) }.unwrap();
+    let pass = &engine.pass(ShadeOptions::default()).unwrap();
     let made = sizes.map(|size| Images::new(&engine, pass, &lights, size));
     let sets = made.each_ref().map(|images| (images.set, images.size));
     let (family, frame_of) = (host.queue_family(), &frame_of);

@@ -1,15 +1,9 @@
 //! G-buffers of other layouts: the same surface in, the same radiance out.
 
-use arealight_capi::{
-    ArealightImage, ArealightModule, ArealightPassOptions, ArealightResult, arealight_pass_create,
-    arealight_pass_destroy,
-};
-use arealight_tests::c_library::{CLibrary, DeviceMemory, c_lamp, good, refused};
+use arealight_tests::c_library::prelude::*;
 use arealight_tests::kernel::shade_with_bridge;
 use arealight_tests::prelude::*;
-use arealight_vk::Error;
 use ash::vk::Format;
-use std::ptr::null_mut;
 
 const CAMERA: Vec3 = Vec3::new(0.0, -1.0, 1.0);
 const FLOAT: Format = Format::R32G32B32A32_SFLOAT;
@@ -203,8 +197,5 @@ fn a_bridge_of_the_host_reads_its_own_g_buffer(engine: &TestEngine) {
     refused(make(&[7], 4).0, argument, "module: does not begin as SPIR-V does");
     refused(make(&module, 7).0, argument, "module.size: 7 bytes are no whole words of SPIR-V");
     let info = ShadePassInfo { module: Some(vec![7]), ..options(GBufferLayout::Arealight).into() };
-    // SAFETY: nothing is made where an error is returned.
-    let error = unsafe { ShadePass::new(engine.context(), info) };
-    let error = error.unwrap_err();
-    assert!(matches!(error, Error::InvalidArgument { field: "module", .. }), "{error}");
+    assert_eq!(field(&engine.pass(info).unwrap_err()), "module");
 }

@@ -5,8 +5,7 @@ use crate::coat_tiles::pictures;
 use crate::properties::on_a_circle;
 use arealight_oracle::material::Anisotropy;
 use arealight_tests::Path;
-use arealight_tests::frame::scene;
-use arealight_tests::materials::{step_within_rounding, under_shapes};
+use arealight_tests::materials::step_within_rounding;
 use arealight_tests::prelude::*;
 
 const COUNT: usize = 2000;

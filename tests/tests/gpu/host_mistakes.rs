@@ -4,7 +4,7 @@
 use arealight_engine::host::Location;
 use arealight_tests::prelude::*;
 use arealight_tool_kernels::kernels::VISIBILITY;
-use arealight_vk::{ComputePass, Context, Error, LightTextures, TableFormat, TableImage};
+use arealight_vk::{ComputePass, Context, LightTextures, TableImage};
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
 

@@ -17,7 +17,7 @@ fn asking<'a>(
     // SAFETY: The callers' buffer outlives the set.
     let own = unsafe { engine.host().own_set(number, &[Resource::buffer(buffer.handle())]) }.unwrap();
     let module = shadow_rays_with_bridge(macro_name);
-    let mut passes = PatchPasses::with_blocker(engine, options(), module, own.layout);
+    let mut passes = PatchPasses::with_blocker(engine, options(), (module, own.layout));
     passes.blocker_set = Some(own.set);
     let (_, material, view) = surfaces().remove(0);
     let (_, light) = symmetric_lights().remove(0);
@@ -90,7 +90,8 @@ fn a_host_multiplies_each_light_with_what_its_shadow_maps_say() {
         let alone = lights
             .clone()
             .map(|light| ShadowPatch { lights: vec![light], ..patch.clone() }.run(&plain).unshadowed[0]);
-        let mut passes = PatchPasses::with_visibility(&engine, options, shade_with_visibility(), own.layout);
+        let mut passes =
+            PatchPasses::with_visibility(&engine, options, (shade_with_visibility(), own.layout));
         passes.visibility_set = Some(own.set);
         let found = patch.run(&passes).unshadowed;
         for (pixel, found) in found.iter().enumerate() {

@@ -1,7 +1,6 @@
 //! How many lights a frame has, said by a buffer that the GPU wrote.
 
 use arealight::gpu::LightCounts;
-use arealight_tests::floor::{lamps, pixels};
 use arealight_tests::prelude::*;
 
 /// The largest difference from what these numbers of lights of the buffers give.

@@ -1,10 +1,9 @@
 //! A host's mistakes with light textures have typed answers that name the field, and then nothing is
 //! recorded.
 
-use crate::recorder::field;
 use arealight_engine::{Passes, TextureArray};
 use arealight_tests::prelude::*;
-use arealight_vk::{Error, LightTextures, TextureUpdate};
+use arealight_vk::{LightTextures, TextureUpdate};
 
 fn small() -> PyramidSize {
     PyramidSize::new(64).unwrap()

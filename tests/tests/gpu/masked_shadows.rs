@@ -2,7 +2,6 @@
 
 use arealight_scene::{Image, Texture, Wrap};
 use arealight_tests::prelude::*;
-use arealight_tests::scenes::square;
 use arealight_tool_kernels::gpu::GpuMaterial;
 use glam::Vec2;
 

@@ -1,7 +1,6 @@
 //! Frames of every material: with tiles and without, and beside the Monte Carlo reference.
 
 use arealight_benches::materials::{self, MaterialErrors, Options};
-use arealight_tests::frame::{reflected, reflected_by_tiles, scene};
 use arealight_tests::prelude::*;
 
 #[test]

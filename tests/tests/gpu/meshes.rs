@@ -7,10 +7,6 @@ use arealight_tests::globe::icosphere;
 use arealight_tests::lobe::{Lobe, Seen};
 use arealight_tests::prelude::*;
 use glam::DAffine3;
-use std::f64::consts::TAU;
-use std::sync::LazyLock;
-
-static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 const SIZE: [u32; 2] = [64, 36];
 
@@ -301,7 +297,7 @@ fn sampled(engine: &TestEngine, scene: &Scene, lights: &[Light]) -> f64 {
 fn a_mesh_is_one_light_of_a_frame() {
     let Some(engine) = TestEngine::new() else { return };
     // The surfaces alone: the camera sees no light
-    let scene = black(&arealight_tests::frame::scene("sweep.glb"));
+    let scene = black(&scene("sweep.glb"));
     let place = scene.lights[0].shape.center();
     let (mesh, apart) = ([cube(place, 0.4)], split(&cube(place, 0.4)));
     let [one, six, five] = [&mesh[..], &apart, &apart[1..]].map(|lights| shaded(&engine, &scene, lights));

@@ -2,7 +2,6 @@
 
 use arealight::plan::RadianceFormat;
 use arealight_tests::prelude::*;
-use arealight_vk::Error;
 use ash::vk::{self, Handle as _};
 use half::f16;
 
@@ -107,28 +106,23 @@ fn the_glossy_image_is_asked_for_where_lobes_are_apart() {
         ..ShadeResources::default()
     };
     let apart = ShadeOptions { separate_lobes: true, ..ShadeOptions::default() };
-    // SAFETY: no submission uses the pass, and nothing is written where an error is returned.
-    let pass = unsafe { ShadePass::new(engine.context(), apart) }.unwrap();
+    let pass = engine.pass(apart).unwrap();
     for (glossy, words) in [
         (None, "glossy: is missing"),
         (Some(view(7)), "glossy: is the image of `radiance`"),
         (Some(view(0)), "glossy_image: is a null handle"),
         (Some(buffer), "glossy_image: is a StorageBuffer"),
     ] {
-        // SAFETY: as above.
-        let error =
-            unsafe { pass.write_set(vk::DescriptorSet::null(), &ShadeResources { glossy, ..resources }) };
-        let error = error.unwrap_err();
+        let resources = ShadeResources { glossy, ..resources };
+        // SAFETY: nothing is written where an error is returned.
+        let error = unsafe { pass.write_set(vk::DescriptorSet::null(), &resources) }.unwrap_err();
         assert!(matches!(error, Error::InvalidArgument { .. }), "{error:?}");
         assert!(error.to_string().starts_with(words), "{error}");
     }
     // Nor is there a coat without its image
     let surfaces = Effects::DIFFUSE | Effects::COAT;
+    let pass = engine.pass(ShadeOptions { surfaces, ..ShadeOptions::default() }).unwrap();
     // SAFETY: as above.
-    let error = unsafe {
-        let pass =
-            ShadePass::new(engine.context(), ShadeOptions { surfaces, ..ShadeOptions::default() }).unwrap();
-        pass.write_set(vk::DescriptorSet::null(), &resources).unwrap_err()
-    };
+    let error = unsafe { pass.write_set(vk::DescriptorSet::null(), &resources) }.unwrap_err();
     assert!(error.to_string().starts_with("coat: is missing"), "{error}");
 }

@@ -1,8 +1,7 @@
 //! Frames in parts, as drivers with a watchdog need them: the picture is that of the whole frame, to the bit.
 
-use arealight_tests::frame::{bits, scene};
+use arealight_tests::frame::bits;
 use arealight_tests::prelude::*;
-use arealight_vk::Error;
 
 /// No multiple of a workgroup's side: five rows of workgroups.
 const SIZE: [u32; 2] = [61, 37];
@@ -105,8 +104,7 @@ fn rows_that_cannot_be_are_refused() {
     let Some(engine) = TestEngine::new() else { return };
     let frame = ShadeFrame { size: [8, 20], ..ShadeFrame::default() };
     let options = ShadeOptions { surfaces: Effects::DIFFUSE, ..ShadeOptions::default() };
-    // SAFETY: the pass is dropped before the engine.
-    let pass = unsafe { ShadePass::new(engine.context(), options) }.unwrap();
+    let pass = engine.pass(options).unwrap();
     let prepare = |rows| pass.prepare(&ShadeFrame { rows: Some(rows), ..frame });
     for wrong in [[0, 0], [8, 8], [0, 21], [4, 20], [0, 12], [16, 8], [u32::MAX - 7, u32::MAX]] {
         let Err(Error::InvalidArgument { field, .. }) = prepare(wrong) else { panic!("{wrong:?}") };

@@ -24,7 +24,7 @@ fn arguments(a: DVec3, w: f64, b: DVec3) -> Arguments {
 /// A unit view at this cosine to a unit normal.
 fn view_at(random: &mut Random, normal: DVec3, cosine: f64) -> DVec3 {
     let aside = normal.any_orthonormal_vector();
-    let (sin, cos) = random.between(0.0, std::f64::consts::TAU).sin_cos();
+    let (sin, cos) = random.between(0.0, TAU).sin_cos();
     let tangent = aside * cos + normal.cross(aside) * sin;
     normal * cosine + tangent * (1.0 - cosine * cosine).max(0.0).sqrt()
 }

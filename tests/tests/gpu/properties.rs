@@ -7,14 +7,11 @@
 use arealight_tests::prelude::*;
 use arealight_tests::{Path, Property};
 use relations::{HOLE, RELATIONS};
-use std::sync::LazyLock;
 
 mod boxes;
 mod horizons;
 mod relations;
 mod switches;
-
-static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 /// Groups of each property.
 const COUNT: usize = 300;

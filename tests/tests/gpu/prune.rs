@@ -3,7 +3,7 @@
 use arealight::TileClass;
 use arealight::kernels::{self, Kernel, constant};
 use arealight::plan::shade_specialization;
-use arealight_tests::frame::{bits, scene};
+use arealight_tests::frame::bits;
 use arealight_tests::kernel::BRANCHES;
 use arealight_tests::prelude::*;
 use arealight_tests::spirv::{tool, words};

@@ -1,13 +1,10 @@
 //! How far lights are of any matter, by points outside.
 
 use arealight::reach::{self, DIFFUSE_DENSITY};
-use arealight_oracle::shading::{ltc, shape_ltc_on, shape_seen_from};
+use arealight_oracle::shading::{shape_ltc_on, shape_seen_from};
 use arealight_oracle::stream::Stream;
 use arealight_tests::kernel::LIGHT_REACH;
 use arealight_tests::prelude::*;
-use std::sync::LazyLock;
-
-static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 const THRESHOLD: f64 = 0.01;
 const LEAST_ROUGHNESS: f64 = 0.3;
@@ -40,22 +37,16 @@ fn lights() -> Vec<Light> {
 
 fn reflected(light: &Light, surface: &Surface, position: DVec3, normal: DVec3, view: DVec3) -> f64 {
     let table = &TABLE;
-    let radiance = match &light.shape {
-        LightShape::Polygon(_) => ltc(table, surface, normal, view, &RelativeLight::new(light, position)),
-        LightShape::Mesh { vertices, faces, .. } => {
-            // Faces are lights of their own
-            let mut rest = vertices.as_slice();
-            faces.iter().fold(DVec3::ZERO, |sum, &count| {
-                let (face, after) = rest.split_at(count as usize);
-                rest = after;
-                let face = Light { shape: LightShape::Polygon(face.to_vec()), ..light.clone() };
-                sum + ltc(table, surface, normal, view, &RelativeLight::new(&face, position))
-            })
-        }
-        _ => {
-            let there = shape_seen_from(light, position);
-            shape_ltc_on(Quality::default(), table, surface, normal, view, &there).unwrap()
-        }
+    let radiance: DVec3 = if light.shape.vertices().is_empty() {
+        let there = shape_seen_from(light, position);
+        shape_ltc_on(Quality::default(), table, surface, normal, view, &there).unwrap()
+    } else {
+        // Faces are lights of their own
+        let of = |face: &[DVec3]| {
+            let face = Light { shape: LightShape::Polygon(face.to_vec()), ..light.clone() };
+            ltc(table, surface, normal, view, &RelativeLight::new(&face, position))
+        };
+        light.shape.outlines().map(of).sum()
     };
     radiance.max_element()
 }

@@ -4,15 +4,8 @@ use arealight::kernels::{self, SHADE, TILE_BINDINGS, constant};
 use arealight::table::LAYERS;
 use arealight_tests::prelude::*;
 use arealight_tool_kernels::kernels::EVAL;
-use arealight_vk::{ComputePass, Error, TableFormat, TableImage};
+use arealight_vk::{ComputePass, TableImage};
 use glam::Mat4;
-
-pub(crate) fn field(error: &Error) -> &'static str {
-    match error {
-        Error::InvalidArgument { field, .. } => field,
-        other => panic!("{other} names no field"),
-    }
-}
 
 fn frame() -> ShadeFrame {
     ShadeFrame { size: [8, 8], lights: LightSummary::default(), ..ShadeFrame::default() }
@@ -28,8 +21,7 @@ fn recording(
     options: ShadeOptions,
     check: impl FnOnce(&ShadePass, vk::CommandBuffer, vk::DescriptorSet),
 ) {
-    // SAFETY: Submissions are waited for before the pass is dropped.
-    let pass = unsafe { ShadePass::new(engine.context(), options) }.unwrap();
+    let pass = engine.pass(options).unwrap();
     let pool = engine.host().descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
     // SAFETY: The layout is the pass's.
     let set = unsafe { pool.allocate(pass.set_layout()) }.unwrap();

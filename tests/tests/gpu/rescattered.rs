@@ -2,7 +2,6 @@
 //! come back.
 
 use arealight_oracle::material::{Anisotropy, Interface};
-use arealight_tests::materials::lobe_qualities;
 use arealight_tests::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,9 +1,8 @@
 //! G-buffers of several samples a texel: a pixel is the mean over its surfaces, each shaded once, in its
 //! sample's place.
 
-use crate::recorder::field;
 use arealight::kernels::read_samples;
-use arealight_tests::floor::{CAMERA, SIZE, floor_material, lamps, looking_at_floor, one_light, pixels};
+use arealight_tests::floor::{CAMERA, SIZE, floor_material, looking_at_floor, one_light};
 use arealight_tests::kernel::shade_with_bridge;
 use arealight_tests::multisampled::{Multisampled, Texel};
 use arealight_tests::prelude::*;
@@ -204,21 +203,14 @@ fn a_host_s_own_g_buffer_may_have_samples() {
     // A pipeline of it is made, validated
     let options = ShadeOptions { samples: 4, ..ShadeOptions::default() };
     let frame = Floor::new(&engine, &lamps()).frame();
-    // SAFETY: The module is the kernel's, and nothing is recorded.
-    unsafe {
-        let info = ShadePassInfo { module: Some(words), ..options.into() };
-        let pass = ShadePass::new(engine.context(), info).unwrap();
-        pass.prepare(&frame).unwrap();
-    }
+    let info = ShadePassInfo { module: Some(words), ..options.into() };
+    engine.pass(info).unwrap().prepare(&frame).unwrap();
 }
 
 #[test]
 fn samples_that_cannot_be_are_refused() {
     let Some(engine) = TestEngine::new() else { return };
-    let refused = |options: ShadeOptions| {
-        // SAFETY: Nothing is made where an error is returned.
-        field(&unsafe { ShadePass::new(engine.context(), options) }.unwrap_err())
-    };
+    let refused = |options: ShadeOptions| field(&engine.pass(options).unwrap_err());
     let plain = ShadeOptions::default();
     for samples in [0, 3, 16, u32::MAX] {
         assert_eq!(refused(ShadeOptions { samples, ..plain }), "samples");

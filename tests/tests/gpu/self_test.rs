@@ -2,7 +2,6 @@
 //! load them wrongly fail.
 
 use arealight::table::LAYERS;
-use arealight_oracle::shading::ltc;
 use arealight_tests::kernel::SELF_TEST;
 use arealight_tests::prelude::*;
 

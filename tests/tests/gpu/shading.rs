@@ -1,22 +1,12 @@
 //! The GPU against the float64 oracle: the same table, the same integral, in another precision.
 
 use arealight::table::{LAYERS, LobePairs};
-use arealight_oracle::shading::{ltc, ltc_on};
 use arealight_tests::prelude::*;
-use arealight_vk::TableFormat;
-use std::sync::LazyLock;
 
 const COUNT: usize = 4000;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
-
 fn expected(point: &EvalPoint) -> DVec3 {
-    expected_with(&TABLE, point)
-}
-
-fn expected_with(table: &LightTable, point: &EvalPoint) -> DVec3 {
-    let light = RelativeLight::new(&point.light, point.position);
-    ltc(table, &point.surface, point.normal, point.view, &light)
+    polygon_twin(Quality::default(), point)
 }
 
 /// Polygons of 3 to 12 vertices, convex and concave, above, across and below the horizon.
@@ -65,48 +55,27 @@ fn lights_at_the_mirror_direction(seed: u64, low: f64, high: f64) -> Vec<EvalPoi
         .collect()
 }
 
-fn compare(
-    what: &str,
-    points: &[EvalPoint],
-    quality: Quality,
-    bound: impl Fn(&EvalPoint) -> f64,
-) -> Option<Comparison> {
-    let engine = TestEngine::new()?;
-    let answers = engine.eval(points, quality).unwrap();
-    assert_eq!(answers.len(), points.len());
-    let mut comparison = Comparison::new(what);
-    for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
-        let light = RelativeLight::new(&given.light, given.position);
-        let expected = ltc_on(quality, &TABLE, &given.surface, given.normal, given.view, &light);
-        for channel in 0..3 {
-            let place = || format!("point {index}, channel {channel}: {given:?}");
-            comparison.add(answer[channel].into(), expected[channel], bound(given), place);
-        }
-    }
-    Some(comparison)
-}
-
 #[test]
 fn lambert_is_exact_to_float32() {
+    let Some(engine) = TestEngine::new() else { return };
     let points = lights(1, |_| lambert_surface());
-    let Some(comparison) = compare("Lambert", &points, Quality::default(), |_| rounding(1.0)) else { return };
-    comparison.assert_all();
+    engine.beside_polygon_twin("Lambert", Quality::default(), &points, |_| rounding(1.0)).assert_all();
 }
 
 #[test]
 fn glossy_follows_the_table_to_float32() {
+    let Some(engine) = TestEngine::new() else { return };
     let points = lights(2, |random| glossy_surface(10.0_f64.powf(random.between(-2.0, 0.0))));
     let bound = |point: &EvalPoint| rounding(point.surface.alpha);
-    let Some(comparison) = compare("GGX", &points, Quality::default(), bound) else { return };
-    comparison.assert_all();
+    engine.beside_polygon_twin("GGX", Quality::default(), &points, bound).assert_all();
 }
 
 #[test]
 fn glossy_follows_the_table_down_to_mirrors() {
+    let Some(engine) = TestEngine::new() else { return };
     let points = lights_at_the_mirror_direction(7, arealight::MIN_ALPHA, 1e-2);
     let bound = |point: &EvalPoint| rounding(point.surface.alpha);
-    let Some(comparison) = compare("GGX, narrow", &points, Quality::default(), bound) else { return };
-    comparison.assert_all();
+    engine.beside_polygon_twin("GGX, narrow", Quality::default(), &points, bound).assert_all();
     // The twin: the lights are seen, and seen in part
     let lit = points.iter().map(|point| expected(point).x);
     let edges = lit.filter(|factor| (0.1..0.9).contains(factor)).count();
@@ -115,6 +84,7 @@ fn glossy_follows_the_table_down_to_mirrors() {
 
 #[test]
 fn fresnel_and_both_lobes_add_up() {
+    let Some(engine) = TestEngine::new() else { return };
     let points = lights(3, |random| Surface {
         diffuse_albedo: DVec3::new(0.8, 0.3, 0.1),
         f0: DVec3::new(0.04, 0.5, 0.9),
@@ -123,8 +93,7 @@ fn fresnel_and_both_lobes_add_up() {
         ..Default::default()
     });
     let bound = |point: &EvalPoint| 2.0 * rounding(point.surface.alpha);
-    let Some(comparison) = compare("both lobes", &points, Quality::default(), bound) else { return };
-    comparison.assert_all();
+    engine.beside_polygon_twin("both lobes", Quality::default(), &points, bound).assert_all();
 }
 
 #[test]
@@ -151,8 +120,7 @@ fn every_way_to_the_glossy_lobe_follows_its_twin() {
                 // Two lobes; the part above the surface is at least .6 of each
                 let bound = |point: &EvalPoint| 2.0 / 0.6 * rounding(point.surface.alpha);
                 let what = format!("{specular_lobes:?}, {lobes:?}, {horizon:?}");
-                let Some(comparison) = compare(&what, &points, quality, bound) else { return };
-                comparison.assert_all();
+                engine.beside_polygon_twin(what, quality, &points, bound).assert_all();
                 answers.push(engine.eval(&points, quality).unwrap());
             }
         }
@@ -175,6 +143,7 @@ fn ceiling(size: f64, height: f64) -> Vec<DVec3> {
 
 #[test]
 fn a_mirror_sees_a_ceiling_of_any_size() {
+    let Some(engine) = TestEngine::new() else { return };
     // Heights of a narrow lobe's cosine space are alpha times as low: a vertex that is on the horizon there
     // by 1e-7 is not in the world
     let points: Vec<EvalPoint> = (0..64)
@@ -191,8 +160,7 @@ fn a_mirror_sees_a_ceiling_of_any_size() {
             let size = point.light.shape.vertices()[2].x - point.position.x;
             rounding(1.0) + 4e-7 * size.sqrt()
         };
-        let Some(comparison) = compare("ceilings", &points, quality, bound) else { return };
-        comparison.assert_all();
+        engine.beside_polygon_twin("ceilings", quality, &points, bound).assert_all();
     }
     assert!(points.iter().all(|point| expected(point).x > 0.1), "the twin: they are all seen");
 }
@@ -251,7 +219,9 @@ fn a_table_in_float16_is_that_table_and_changes_little() {
     for (given, (coarse, fine)) in points.iter().zip(coarse.iter().zip(&fine)) {
         let (coarse, fine) = (f64::from(coarse.x), f64::from(fine.x));
         let (alpha, place) = (given.surface.alpha, || format!("{given:?}"));
-        exact.add(coarse, expected_with(&table, given).x, rounding(alpha), place);
+        let light = RelativeLight::new(&given.light, given.position);
+        let expected = ltc(&table, &given.surface, given.normal, given.view, &light);
+        exact.add(coarse, expected.x, rounding(alpha), place);
         // An albedo from 0.5 to 1 is rounded by up to 2^-12; the rounded shape is allowed as much again. (By
         // measurement: the largest change over 2e5 such points is 3.3e-4.)
         change.add(coarse, fine, 2.0 * 2.0_f64.powi(-12), place);

@@ -3,7 +3,6 @@
 use crate::shadows::{flat, options, surfaces};
 use arealight_tests::prelude::*;
 use arealight_tests::shadow_patch::{PatchPasses, SIDE, ShadowPatch};
-use std::f64::consts::TAU;
 
 const SIZE: usize = SIDE as usize;
 

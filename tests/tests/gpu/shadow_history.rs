@@ -4,7 +4,6 @@
 use arealight::plan::{ShadowFilter, ShadowHistory};
 use arealight_engine::ShadowedView;
 use arealight_tests::prelude::*;
-use arealight_tests::scenes::{box_of, quad_light, square};
 
 const SIZE: [u32; 2] = [96, 72];
 

@@ -1,9 +1,7 @@
 //! What a host may get wrong about shadows: each is an error that names the field, and nothing is recorded.
 
-use crate::recorder::field;
-use arealight_tests::frame::scene;
 use arealight_tests::prelude::*;
-use arealight_vk::{BlockerResources, Error, ShadowOptions, ShadowPass, ShadowPassInfo, ShadowResources};
+use arealight_vk::{BlockerResources, ShadowOptions, ShadowPass, ShadowPassInfo, ShadowResources};
 
 fn with_rays(shadow_rays: u32) -> ShadeOptions {
     ShadeOptions { shadow_rays, ..ShadeOptions::default() }
@@ -16,29 +14,22 @@ fn info(options: ShadeOptions, shadows: ShadowOptions) -> ShadowPassInfo {
 #[test]
 fn options_that_no_shadow_can_be_made_with_are_refused() {
     let Some(engine) = TestEngine::new() else { return };
-    let refused = |options| {
-        // SAFETY: A pass that is made is dropped unused.
-        let made = unsafe { ShadePass::new(engine.context(), options) };
-        made.err().map(|error| field(&error).to_owned())
-    };
-    assert_eq!(refused(with_rays(5)).as_deref(), Some("shadow_rays"));
+    let refused = |options: ShadeOptions| engine.pass(options).err().map(|error| field(&error));
+    assert_eq!(refused(with_rays(5)), Some("shadow_rays"));
     let adds = ShadeOptions { output: Output::Add, ..with_rays(1) };
-    assert_eq!(refused(adds).as_deref(), Some("output"));
+    assert_eq!(refused(adds), Some("output"));
     let separate = ShadeOptions { separate_lobes: true, ..with_rays(1) };
-    assert_eq!(refused(separate).as_deref(), Some("separate_lobes"));
+    assert_eq!(refused(separate), Some("separate_lobes"));
     // The twins
     assert_eq!(refused(with_rays(4)), None);
     assert_eq!(refused(ShadeOptions { shadow_rays: 0, ..adds }), None);
     assert_eq!(refused(ShadeOptions { shadow_rays: 0, ..separate }), None);
 
     for (rays, is_refused) in [(0, true), (5, true), (1, false)] {
-        // SAFETY: As above.
-        let made =
-            unsafe { ShadowPass::new(engine.context(), info(with_rays(rays), ShadowOptions::default())) };
-        assert_eq!(
-            made.err().map(|error| field(&error).to_owned()),
-            is_refused.then(|| "shadow_rays".into())
-        );
+        let info = info(with_rays(rays), ShadowOptions::default());
+        // SAFETY: A pass that is made is dropped unused.
+        let made = unsafe { ShadowPass::new(engine.context(), info) };
+        assert_eq!(made.err().map(|error| field(&error)), is_refused.then_some("shadow_rays"));
     }
 }
 
@@ -53,7 +44,7 @@ fn what_a_shadow_pass_reads_is_asked_for() {
     };
     // SAFETY: The passes are dropped unused; sets are null where an error comes first.
     unsafe {
-        let shade = ShadePass::new(engine.context(), options).unwrap();
+        let shade = engine.pass(options).unwrap();
         let shadow = ShadowPass::new(engine.context(), info(options, ShadowOptions::default())).unwrap();
         let over_frames = ShadowPass::new(engine.context(), info(options, history)).unwrap();
         let scene = scene("sweep.glb");

@@ -3,7 +3,6 @@
 
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{SupportedCase, read_cases};
-use arealight_oracle::shading::ltc_on;
 use arealight_oracle::visibility::is_hidden;
 use arealight_tests::kernel::SHADOW_RAYS;
 use arealight_tests::prelude::*;

@@ -1,7 +1,6 @@
 //! Shadows of scenes from a micrometre to ten kilometres are alike, by rays and by Monte Carlo.
 
 use arealight_tests::prelude::*;
-use arealight_tests::scenes::{box_of, quad_light, square};
 
 const SIZE: [u32; 2] = [96, 72];
 

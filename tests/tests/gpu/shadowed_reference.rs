@@ -4,7 +4,6 @@ use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::truth;
 use arealight_oracle::visibility::visible_parts;
 use arealight_tests::prelude::*;
-use arealight_tests::scenes::{box_of, quad_light, square};
 
 const SIZE: [u32; 2] = [32, 24];
 

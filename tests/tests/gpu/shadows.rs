@@ -1,7 +1,6 @@
 //! The shade pass and the shadow pass, after one another: what arrives of lights of every kind, from surfaces
 //! of every kind.
 
-use arealight_oracle::shading::ltc_on;
 use arealight_oracle::visibility::visible_parts;
 use arealight_tests::globe::icosphere;
 use arealight_tests::prelude::*;
@@ -328,7 +327,7 @@ fn prism([p0, p1]: [DVec3; 2], radius: f64, sides: u32) -> Light {
     let axis = (p1 - p0).normalize_or(DVec3::Z);
     let (u, v) = axis.any_orthonormal_pair();
     let at = |center: DVec3, side: u32| {
-        let angle = std::f64::consts::TAU * f64::from(side % sides) / f64::from(sides);
+        let angle = TAU * f64::from(side % sides) / f64::from(sides);
         center + radius * (angle.cos() * u + angle.sin() * v)
     };
     let mut mesh = LightShape::default();

@@ -2,11 +2,8 @@
 
 use arealight_benches::pictures;
 use arealight_oracle::shading::{shape_ltc_on, shape_seen_from};
-use arealight_tests::pass::{LightBuffers, planes, radiance, reads, run, store, stored_in};
+use arealight_tests::pass::run;
 use arealight_tests::prelude::*;
-use std::sync::{Arc, LazyLock};
-
-static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 const PIXELS: usize = 512;
 const CAMERA: DVec3 = DVec3::new(0.5, -4.0, 3.0);
@@ -137,8 +134,7 @@ fn shade(engine: &TestEngine, effects: Effects, lights: &[Light]) -> Vec<Vec4> {
         ..lights.frame(size, CAMERA.as_vec3())
     };
     let options = ShadeOptions { surfaces: effects, ..ShadeOptions::default() };
-    // SAFETY: `run` waits, and the pass is dropped before the engine.
-    let pass = unsafe { ShadePass::new(engine.context(), options) }.expect("a pipeline");
+    let pass = engine.pass(options).expect("a pipeline");
     run(engine, &pass, &resources, size, &[frame], Descriptors::Sets);
     stored_in(&radiance)
 }

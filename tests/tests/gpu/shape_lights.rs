@@ -6,7 +6,6 @@ use arealight_oracle::polygon;
 use arealight_oracle::sphere::Sphere;
 use arealight_tests::prelude::*;
 use arealight_tests::shapes::lobe_arguments;
-use std::f64::consts::TAU;
 
 const COSINE: u32 = 0;
 const BOTH: u32 = 1;

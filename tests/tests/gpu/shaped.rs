@@ -4,13 +4,11 @@ use arealight::plan::{ShadowFilter, ShadowHistory};
 use arealight::{LightTexture, Opening, Profile, PyramidSize, TexturePart};
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{SupportedCase, read_cases};
-use arealight_engine::{Engine, Reference, SourceImage, SourceTexels};
+use arealight_engine::{Engine, Reference};
 use arealight_oracle::cubature::Settings;
-use arealight_oracle::shading::{ltc_on, truth};
+use arealight_oracle::shading::truth;
 use arealight_tests::prelude::*;
-use arealight_tests::scenes::box_of;
 use glam::DVec2;
-use std::f64::consts::TAU;
 
 fn read(name: &str) -> String {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/reference/");
@@ -25,11 +23,6 @@ fn case_point(case: &SupportedCase, profile: Option<Profile>) -> EvalPoint {
         ..Light::default()
     };
     EvalPoint { surface: case.surface, position: DVec3::ZERO, normal: case.normal, view: case.view, light }
-}
-
-fn twin(quality: Quality, given: &EvalPoint) -> DVec3 {
-    let light = RelativeLight::new(&given.light, given.position);
-    ltc_on(quality, &LightTable::ggx(), &given.surface, given.normal, given.view, &light)
 }
 
 /// The root of the mean squared difference of the first channels, in parts of the mean truth.
@@ -56,7 +49,7 @@ fn known_radiance_is_met_by_few_levels() {
             .iter()
             .map(|(case, _)| {
                 let profile = case.light.profile.as_ref().unwrap().with_levels(Profile::MAX_LEVELS);
-                twin(Quality::default(), &case_point(case, Some(profile))).x
+                polygon_twin(Quality::default(), &case_point(case, Some(profile))).x
             })
             .collect();
         if material == "diffuse" {
@@ -195,7 +188,7 @@ fn a_street_lamp_is_not_round() {
         assert!(of_round > 1.7 * off, "{}, far: {far}: {of_round} round, {off}", surface.alpha);
         let mut comparison = Comparison::new(format!("{}, far: {far}", surface.alpha));
         for (index, (given, found)) in points.iter().zip(&found).enumerate() {
-            let expected = twin(Quality::default(), given);
+            let expected = polygon_twin(Quality::default(), given);
             // As rings, whose chords are coarser than the twin's
             comparison.add(*found, expected.x, 1.5e-2, || format!("point {index}: {given:?}"));
         }
@@ -208,15 +201,9 @@ fn rings_follow_their_float64_twin() {
     let Some(engine) = TestEngine::new() else { return };
     for (surface, bound) in [(lambert_surface(), 2e-3), (glossy_surface(0.2), 1.5e-2)] {
         for quality in [Quality::default(), Quality { horizon: Horizon::Both, ..Quality::default() }] {
-            let points = points(1, &surface, 2000);
-            let answers = engine.eval(&points, quality).unwrap();
-            let mut comparison = Comparison::new(format!("{quality:?}, {}", surface.alpha));
-            for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
-                let expected = twin(quality, given);
-                // Chords of a rim have its area, not its place: Lambert's lobe sees little of that
-                comparison.add_color(*answer, expected, bound, || format!("point {index}: {given:?}"));
-            }
-            comparison.assert_all();
+            let (points, what) = (points(1, &surface, 2000), format!("{quality:?}, {}", surface.alpha));
+            // Chords of a rim have its area, not its place: Lambert's lobe sees little of that
+            engine.beside_polygon_twin(what, quality, &points, |_| bound).assert_all();
         }
     }
 }
@@ -240,14 +227,9 @@ fn a_corner_on_a_rim_is_not_all_of_the_rim() {
         given.normal = -normal;
         given.light.profile = Some(spot.clone());
     }
-    let answers = engine.eval(&points, Quality::default()).unwrap();
-    let mut comparison = Comparison::new("corners on rims".to_owned());
-    let mut lit = 0;
-    for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
-        let expected = twin(Quality::default(), given);
-        lit += usize::from(expected.x > 1e-3);
-        comparison.add_color(*answer, expected, 2e-3, || format!("point {index}: {given:?}"));
-    }
+    let quality = Quality::default();
+    let comparison = engine.beside_polygon_twin("corners on rims", quality, &points, |_| 2e-3);
+    let lit = points.iter().filter(|given| polygon_twin(quality, given).x > 1e-3).count();
     println!("{lit} are lit, {:e}", comparison.largest());
     assert!(lit > 500, "{lit}");
     comparison.assert_all();
@@ -309,14 +291,13 @@ fn openings_clip_as_their_float64_twin() {
     ] {
         for quality in [Quality::default(), Quality { horizon: Horizon::Both, ..Quality::default() }] {
             let points = opened_points(3, &surface, 1200, has_profiles);
-            let answers = engine.eval(&points, quality).unwrap();
-            let mut comparison = Comparison::new(format!("{quality:?}, {}, {has_profiles}", surface.alpha));
+            let what = format!("{quality:?}, {}, {has_profiles}", surface.alpha);
+            let comparison = engine.beside_polygon_twin(what, quality, &points, |_| bound);
             let (mut hidden, mut dimmer) = (0, 0);
-            for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
-                let expected = twin(quality, given);
-                comparison.add_color(*answer, expected, bound, || format!("point {index}: {given:?}"));
+            for given in &points {
+                let expected = polygon_twin(quality, given);
                 let open = Light { opening: None, ..given.light.clone() };
-                let all = twin(quality, &EvalPoint { light: open, ..given.clone() });
+                let all = polygon_twin(quality, &EvalPoint { light: open, ..given.clone() });
                 hidden += usize::from(all.x > 0.01 && expected.x == 0.0);
                 dimmer += usize::from(expected.x > 0.0 && expected.x < all.x - 2.0 * bound);
             }
@@ -369,7 +350,7 @@ fn truth_has_openings() {
     for given in &points {
         let light = RelativeLight::new(&given.light, given.position);
         let truth = truth(&given.surface, given.normal, given.view, &light, &Settings::default());
-        let exact = twin(Quality::default(), given);
+        let exact = polygon_twin(Quality::default(), given);
         assert!((truth.radiance - exact).abs().max_element() < 1e-6, "{} {exact}", truth.radiance);
     }
 }

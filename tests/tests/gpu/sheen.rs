@@ -1,8 +1,7 @@
 //! Sheen on the GPU: against the float64 twin, against none, and in its image of a G-buffer.
 
 use arealight_oracle::material::Sheen;
-use arealight_tests::materials::{changed, lobe_qualities, under_shapes};
-use arealight_tests::one_pixel::material;
+use arealight_tests::materials::changed;
 use arealight_tests::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 

@@ -5,11 +5,7 @@
 use arealight_tests::Path;
 use arealight_tests::lobe::{Judge, Lobe, Seen};
 use arealight_tests::prelude::*;
-use arealight_vk::TableFormat;
 use half::f16;
-use std::sync::LazyLock;
-
-static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 /// Points of each family.
 const COUNT: usize = 2000;
@@ -46,7 +42,7 @@ const FAMILIES: [(&str, Make); 6] = [
     ("along the normal", |random, index| {
         let alpha = alpha(random, 1e-3, 1.0);
         let tilt = if index % 4 == 0 { 0.0 } else { 10.0_f64.powf(random.between(-9.0, -3.0)) };
-        let around = random.between(0.0, std::f64::consts::TAU);
+        let around = random.between(0.0, TAU);
         let view = DVec3::new(tilt * around.cos(), tilt * around.sin(), 1.0);
         let vertices = in_the_lobe(random, alpha, view, 3 + index % 4);
         let mut given = point(glossy_surface(alpha), view, vertices, index % 3 == 0);

@@ -4,12 +4,9 @@
 use arealight::gpu::GpuLight;
 use arealight_tests::Path;
 use arealight_tests::lobe::{Lobe, Seen};
-use arealight_tests::pass::{LightBuffers, planes, radiance, reads, run, store, stored_in};
+use arealight_tests::pass::run;
 use arealight_tests::prelude::*;
 use arealight_tool_kernels::gpu::GpuCase;
-use std::sync::LazyLock;
-
-static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 const FRAMES: usize = 1000;
 
@@ -124,8 +121,7 @@ impl<'a> Sweep<'a> {
     fn shade(&self, level: Level) -> Vec<f32> {
         let surfaces = level.effects(Effects::DIFFUSE | Effects::GLOSSY);
         let options = ShadeOptions { surfaces, quality: level.quality, ..ShadeOptions::default() };
-        // SAFETY: `run` waits, and the pass is dropped before the engine.
-        let pass = unsafe { ShadePass::new(self.engine.context(), options) }.unwrap();
+        let pass = self.engine.pass(options).unwrap();
         // What is not written stays NaN
         let radiance = radiance(self.engine, SIZE, Vec4::NAN);
         let planes = reads(&self.planes);

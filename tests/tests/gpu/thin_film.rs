@@ -4,7 +4,7 @@
 use arealight_oracle::material::Interface;
 use arealight_oracle::thin_film::ThinFilm;
 use arealight_tests::materials::points_of;
-use arealight_tests::one_pixel::{CAMERA, material};
+use arealight_tests::one_pixel::CAMERA;
 use arealight_tests::prelude::*;
 use arealight_vk::ash::vk::Format;
 

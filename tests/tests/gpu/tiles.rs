@@ -3,10 +3,8 @@
 use arealight::kernels::{CLASSIFY, SHADE};
 use arealight::{Opening, Profile, TileClass};
 use arealight_engine::TileCounts;
-use arealight_tests::frame::{black, reflected, reflected_by_tiles, scene};
+use arealight_tests::frame::black;
 use arealight_tests::prelude::*;
-use arealight_vk::Error;
-use std::sync::Arc;
 
 /// No multiple of a tile's side.
 const SIZE: [u32; 2] = [61, 37];
@@ -362,18 +360,10 @@ fn lists_have_the_order_of_the_buffers() {
 #[test]
 fn options_out_of_range_and_missing_buffers_are_refused() {
     let Some(engine) = TestEngine::new() else { return };
-    let field = |error: Error| {
-        let Error::InvalidArgument { field, .. } = error else { panic!("{error}") };
-        field
-    };
-    let make_of = |info| {
-        // SAFETY: Nothing is made where an error is returned; else it is dropped before the engine.
-        unsafe { ShadePass::new(engine.context(), info) }
-    };
     let info_of =
         |tiles, table_size| ShadePassInfo { tiles: Some(tiles), table_size, ..ShadePassInfo::default() };
-    let make = |tiles, table_size| make_of(info_of(tiles, table_size));
-    let refused = |tiles, table_size| field(make(tiles, table_size).unwrap_err());
+    let make = |tiles, table_size| engine.pass(info_of(tiles, table_size));
+    let refused = |tiles, table_size| field(&make(tiles, table_size).unwrap_err());
     assert_eq!(refused(TileOptions { capacity: 0, ..every_frame() }, 64), "capacity");
     for cull_threshold in [1.0, -0.1, f32::NAN] {
         assert_eq!(refused(TileOptions { cull_threshold, ..every_frame() }, 64), "cull_threshold");
@@ -381,15 +371,14 @@ fn options_out_of_range_and_missing_buffers_are_refused() {
     assert_eq!(refused(every_frame(), 1), "table_size");
     // A module of the host's has one for tiles too
     let own = ShadePassInfo { module: Some(SHADE.words()), ..info_of(every_frame(), 64) };
-    assert_eq!(field(make_of(own.clone()).unwrap_err()), "tile_module");
-    make_of(ShadePassInfo { tile_module: Some(CLASSIFY.words()), ..own }).unwrap();
+    assert_eq!(field(&engine.pass(own.clone()).unwrap_err()), "tile_module");
+    engine.pass(ShadePassInfo { tile_module: Some(CLASSIFY.words()), ..own }).unwrap();
 
     let pass = make(every_frame(), 64).unwrap();
     let needed = pass.tile_memory([17, 8]).unwrap();
     assert_eq!(needed.size, arealight::tiles::memory([17, 8], every_frame().capacity));
     assert!(needed.usage.contains(vk::BufferUsageFlags::INDIRECT_BUFFER));
-    // SAFETY: As above.
-    let plain = unsafe { ShadePass::new(engine.context(), ShadeOptions::default()) }.unwrap();
+    let plain = engine.pass(ShadeOptions::default()).unwrap();
     assert_eq!((plain.tile_memory([17, 8]), plain.tiles()), (None, None));
     let names = |pass: &ShadePass| pass.accesses().iter().map(|access| access.name).collect::<Vec<_>>();
     assert!(names(&pass).contains(&"lobe_horizons") && !names(&plain).contains(&"lobe_horizons"));
@@ -401,15 +390,15 @@ fn options_out_of_range_and_missing_buffers_are_refused() {
         // SAFETY: Nothing is written or recorded where an error is returned.
         unsafe {
             let without = ShadeResources { tile_lists: None, ..resources };
-            assert_eq!(field(pass.write_set(none, &without).unwrap_err()), "tile_lists");
+            assert_eq!(field(&pass.write_set(none, &without).unwrap_err()), "tile_lists");
             let without = ShadeResources { lobe_horizons: None, ..resources };
-            assert_eq!(field(pass.write_set(none, &without).unwrap_err()), "lobe_horizons");
+            assert_eq!(field(&pass.write_set(none, &without).unwrap_err()), "lobe_horizons");
             for lists in [None, resources.planes[Plane::Position], Some(Resource::buffer(vk::Buffer::null()))]
             {
                 let frame = ShadeFrame { tile_lists: lists, ..frame };
                 let error = pass.record(vk::CommandBuffer::null(), none, &frame).unwrap_err();
-                assert_eq!(field(error), "tile_lists");
-                assert_eq!(field(pass.prepare(&frame).unwrap_err()), "tile_lists");
+                assert_eq!(field(&error), "tile_lists");
+                assert_eq!(field(&pass.prepare(&frame).unwrap_err()), "tile_lists");
             }
         }
         // The twin: with them the frame is right

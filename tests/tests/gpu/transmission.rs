@@ -3,7 +3,6 @@
 
 use arealight_engine::EngineError;
 use arealight_oracle::material::Interface;
-use arealight_tests::frame::scene;
 use arealight_tests::prelude::*;
 use half::f16;
 

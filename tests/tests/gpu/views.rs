@@ -1,13 +1,8 @@
 //! Which pixels a frame is, and from where it is seen: viewports, rectangles, half resolution and
 //! orthographic cameras, with and without tiles, each pixel against the oracle.
 
-use crate::recorder::field;
-use arealight_oracle::shading::ltc;
-use arealight_tests::floor::looking_at_floor;
-use arealight_tests::one_pixel::material;
-use arealight_tests::pass::{
-    LightBuffers, image, planes, radiance, read, reads, run, store, stored_in, texels,
-};
+use arealight_tests::floor::{floor_material, looking_at_floor};
+use arealight_tests::pass::{run, texels};
 use arealight_tests::prelude::*;
 use arealight_vk::Viewport;
 use glam::{DMat4, DVec4};
@@ -147,8 +142,7 @@ fn shade(
     let frames: Vec<_> = frames.iter().map(|frame| ShadeFrame { lights: summary, ..*frame }).collect();
     let tiles = tiles.then_some(TileOptions { least_quads: 0, ..TileOptions::default() });
     let info = ShadePassInfo { tiles, table_size: engine.table_size(), ..options.into() };
-    // SAFETY: `run` waits, and the pass is dropped before the engine.
-    let pass = unsafe { ShadePass::new(engine.context(), info) }.unwrap();
+    let pass = engine.pass(info).unwrap();
     // Frames with tiles have their lists in turn
     run(engine, &pass, &resources, TEXELS, &frames, Descriptors::Sets);
     stored_in(&radiance)
@@ -156,7 +150,7 @@ fn shade(
 
 /// The largest difference from the oracle, of pixels that some shot has; others are as they were.
 fn worst(options: ShadeOptions, shots: &[Shot], found: &[Vec4]) -> f64 {
-    let (table, lights, surface) = (LightTable::ggx(), lights(), dielectric());
+    let (table, lights, surface) = (LightTable::ggx(), lights(), floor_material().surface());
     let (mut worst, mut lit) = (0.0_f64, 0);
     for (pixel, found) in texels(TEXELS).zip(found) {
         let Some(shot) = shots.iter().find(|shot| shot.has(pixel, 1)) else {
@@ -176,11 +170,6 @@ fn worst(options: ShadeOptions, shots: &[Shot], found: &[Vec4]) -> f64 {
     let pixels: usize = shots.iter().map(|shot| (shot.size[0] * shot.size[1]) as usize).sum();
     assert!(lit > pixels / 4, "{lit} of {pixels} pixels are lit");
     worst
-}
-
-/// The floor's surface: the kernel's own reflectance of dielectrics.
-fn dielectric() -> Surface {
-    Material { dielectric_f0: Vec3::splat(0.04), dielectric_f90: 1.0, ..material() }.surface()
 }
 
 /// Twenty units away a depth of 24 bits is known to 4e-6 of them with this near plane, and radiance of 3
@@ -263,8 +252,7 @@ fn half_resolution_shades_every_other_texel() {
 #[test]
 fn views_that_cannot_be_are_refused_by_field() {
     let Some(engine) = TestEngine::new() else { return };
-    // SAFETY: nothing is made where an error is returned; else it is dropped before the engine.
-    let pass = |options| unsafe { ShadePass::new(engine.context(), options) };
+    let pass = |options: ShadeOptions| engine.pass(options);
     let plain = ShadeOptions::default();
     for texels_per_pixel in [0, 17] {
         assert_eq!(field(&pass(ShadeOptions { texels_per_pixel, ..plain }).unwrap_err()), "texels_per_pixel");

@@ -101,61 +101,40 @@ fn read_material(
     reader.warn_of_mappings(source);
     // Factors
     let pbr = &source.pbr_metallic_roughness;
-    let [r, g, b, alpha] = reader.fractions("baseColorFactor", pbr.base_color_factor.0);
-    let [metalness] = reader.fractions("metallicFactor", [pbr.metallic_factor.0]);
-    let [roughness] = reader.fractions("roughnessFactor", [pbr.roughness_factor.0]);
+    let [r, g, b, base_alpha] = reader.fractions("baseColorFactor", pbr.base_color_factor.0);
+    let metalness = reader.fraction("metallicFactor", pbr.metallic_factor.0);
+    let roughness = reader.fraction("roughnessFactor", pbr.roughness_factor.0);
     let specular = specular(source);
     let (dielectric_f0, dielectric_f90) = reader.dielectric(source, &specular);
-    let clearcoat = reader.clearcoat(source)?;
-    let [coat] = reader.fractions("clearcoatFactor", [clearcoat.factor]);
-    let [coat_roughness] = reader.fractions("clearcoatRoughnessFactor", [clearcoat.roughness_factor]);
-    let sheen = reader.sheen(source)?;
-    let sheen_color = reader.fractions("sheenColorFactor", sheen.color_factor);
-    let [sheen_roughness] = reader.fractions("sheenRoughnessFactor", [sheen.roughness_factor]);
-    let iridescence = reader.iridescence(source)?;
-    let transmission = reader.diffuse_transmission(source)?;
-    let [transmission_factor] = reader.fractions("diffuseTransmissionFactor", [transmission.factor]);
-    let transmission_color = reader.fractions("diffuseTransmissionColorFactor", transmission.color_factor);
-    let pane: Transmission = reader.extension(source, TRANSMISSION)?;
-    let [glass] = reader.fractions("transmissionFactor", [pane.factor]);
+    // Nothing is left of an extension whose factor is zero
+    let coat = reader.extension(source, CLEARCOAT, |coat: &Clearcoat| coat.clearcoat_factor != 0.0)?;
+    let sheen = reader.extension(source, SHEEN, |sheen: &Sheen| sheen.sheen_color_factor != [0.0; 3])?;
+    let through = |it: &DiffuseTransmission| it.diffuse_transmission_factor != 0.0;
+    let film = reader.iridescence(source)?;
+    let diffused = reader.extension(source, DIFFUSE_TRANSMISSION, through)?;
+    let pane: Transmission = reader.extension(source, TRANSMISSION, |_| true)?;
+    let sheen_color = reader.fractions("sheenColorFactor", sheen.sheen_color_factor);
+    let transmission_color =
+        reader.fractions("diffuseTransmissionColorFactor", diffused.diffuse_transmission_color_factor);
     let material = Material {
         base_color: Vec3::new(r, g, b),
         metalness,
         roughness,
         dielectric_f0,
         dielectric_f90,
-        coat,
-        coat_roughness,
+        coat: reader.fraction("clearcoatFactor", coat.clearcoat_factor),
+        coat_roughness: reader.fraction("clearcoatRoughnessFactor", coat.clearcoat_roughness_factor),
         sheen_color: Vec3::from_array(sheen_color),
-        sheen_roughness,
-        film: iridescence.film(),
-        transmission: transmission_factor,
+        sheen_roughness: reader.fraction("sheenRoughnessFactor", sheen.sheen_roughness_factor),
+        film: film.film(),
+        transmission: reader.fraction("diffuseTransmissionFactor", diffused.diffuse_transmission_factor),
         transmission_color: Vec3::from_array(transmission_color),
-        glass,
+        glass: reader.fraction("transmissionFactor", pane.transmission_factor),
     };
     let anisotropy = reader.anisotropy(source)?;
-    let [anisotropy_strength] = reader.fractions("anisotropyStrength", [anisotropy.strength]);
+    let anisotropy_strength = reader.fraction("anisotropyStrength", anisotropy.anisotropy_strength);
     let emission = reader.emission(source);
-    // Textures
-    let base_color_texture = reader.texture(pbr.base_color_texture.as_ref(), true)?;
-    let metallic_roughness_texture = reader.texture(pbr.metallic_roughness_texture.as_ref(), false)?;
-    let specular_texture = reader.texture(specular.specular_texture.as_ref(), false)?;
-    let specular_color_texture = reader.texture(specular.specular_color_texture.as_ref(), true)?;
-    let emission_texture = reader.texture(source.emissive_texture.as_ref(), true)?;
-    let (normal_texture, normal_scale) = reader.normal_texture(source.normal_texture.as_ref())?;
-    let coat_texture = reader.texture(clearcoat.texture.as_ref(), false)?;
-    let coat_roughness_texture = reader.texture(clearcoat.roughness_texture.as_ref(), false)?;
-    let (coat_normal_texture, coat_normal_scale) =
-        reader.normal_texture(clearcoat.normal_texture.as_ref())?;
-    let sheen_color_texture = reader.texture(sheen.color_texture.as_ref(), true)?;
-    let sheen_roughness_texture = reader.texture(sheen.roughness_texture.as_ref(), false)?;
-    let anisotropy_texture = reader.texture(anisotropy.texture.as_ref(), false)?;
-    let film_texture = reader.texture(iridescence.texture.as_ref(), false)?;
-    let film_thickness_texture = reader.texture(iridescence.thickness_texture.as_ref(), false)?;
-    let transmission_texture = reader.texture(transmission.texture.as_ref(), false)?;
-    let transmission_color_texture = reader.texture(transmission.color_texture.as_ref(), true)?;
-    let glass_texture = reader.texture(pane.texture.as_ref().filter(|_| glass > 0.0), false)?;
-    // Transparency
+    let (normal, coat_normal) = (source.normal_texture.as_ref(), coat.clearcoat_normal_texture.as_ref());
     let alpha_cutoff = match source.alpha_mode {
         Checked::Valid(AlphaMode::Mask) => Some(source.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0)),
         Checked::Valid(AlphaMode::Blend) => {
@@ -167,30 +146,32 @@ fn read_material(
     Ok(SceneMaterial {
         name,
         material,
-        base_alpha: alpha,
+        base_alpha,
         emission,
-        base_color_texture,
-        metallic_roughness_texture,
-        specular_texture,
-        specular_color_texture,
-        normal_texture,
-        normal_scale,
-        emission_texture,
-        coat_texture,
-        coat_roughness_texture,
-        coat_normal_texture,
-        coat_normal_scale,
-        sheen_color_texture,
-        sheen_roughness_texture,
+        base_color_texture: reader.texture(pbr.base_color_texture.as_ref(), true)?,
+        metallic_roughness_texture: reader.texture(pbr.metallic_roughness_texture.as_ref(), false)?,
+        specular_texture: reader.texture(specular.specular_texture.as_ref(), false)?,
+        specular_color_texture: reader.texture(specular.specular_color_texture.as_ref(), true)?,
+        emission_texture: reader.texture(source.emissive_texture.as_ref(), true)?,
+        normal_texture: reader.normal_texture(normal)?,
+        normal_scale: normal_scale(normal),
+        coat_texture: reader.texture(coat.clearcoat_texture.as_ref(), false)?,
+        coat_roughness_texture: reader.texture(coat.clearcoat_roughness_texture.as_ref(), false)?,
+        coat_normal_texture: reader.normal_texture(coat_normal)?,
+        coat_normal_scale: normal_scale(coat_normal),
+        sheen_color_texture: reader.texture(sheen.sheen_color_texture.as_ref(), true)?,
+        sheen_roughness_texture: reader.texture(sheen.sheen_roughness_texture.as_ref(), false)?,
         anisotropy_strength,
-        anisotropy_rotation: anisotropy.rotation,
-        anisotropy_texture,
-        film_texture,
-        film_thickness_texture,
-        film_least_thickness: iridescence.least_thickness,
-        transmission_texture,
-        transmission_color_texture,
-        glass_texture,
+        anisotropy_rotation: anisotropy.anisotropy_rotation,
+        anisotropy_texture: reader.texture(anisotropy.anisotropy_texture.as_ref(), false)?,
+        film_texture: reader.texture(film.iridescence_texture.as_ref(), false)?,
+        film_thickness_texture: reader.texture(film.iridescence_thickness_texture.as_ref(), false)?,
+        film_least_thickness: film.iridescence_thickness_minimum,
+        transmission_texture: reader.texture(diffused.diffuse_transmission_texture.as_ref(), false)?,
+        transmission_color_texture: reader
+            .texture(diffused.diffuse_transmission_color_texture.as_ref(), true)?,
+        glass_texture: reader
+            .texture(pane.transmission_texture.as_ref().filter(|_| material.glass > 0.0), false)?,
         alpha_cutoff,
         blended: matches!(source.alpha_mode, Checked::Valid(AlphaMode::Blend)),
         double_sided: source.double_sided,
@@ -218,6 +199,11 @@ impl Reader<'_, '_> {
         clamped
     }
 
+    fn fraction(&mut self, field: &str, value: f32) -> f32 {
+        let [clamped] = self.fractions(field, [value]);
+        clamped
+    }
+
     /// Reflectance of the dielectric at normal and at grazing incidence, by `KHR_materials_ior` and
     /// `KHR_materials_specular`.
     fn dielectric(&mut self, source: &json::Material, specular: &Specular) -> (Vec3, f32) {
@@ -229,7 +215,7 @@ impl Reader<'_, '_> {
             index = 1.5;
         }
         let by_index = (((index - 1.0) / (index + 1.0)) * ((index - 1.0) / (index + 1.0))) as f32;
-        let [weight] = self.fractions("specularFactor", [specular.specular_factor.0]);
+        let weight = self.fraction("specularFactor", specular.specular_factor.0);
         let color = Vec3::from_array(specular.specular_color_factor.0.map(|c| c.clamp(0.0, f32::MAX)));
         let f0 = color * by_index;
         // What is above 1 is cut off where the colour's texture has been multiplied in
@@ -237,69 +223,57 @@ impl Reader<'_, '_> {
         (f0 * weight, weight)
     }
 
-    /// What an extension says that the gltf crate does not read; its defaults without it.
+    /// What an extension says that the gltf crate does not read; its defaults without it, and where there is
+    /// nothing of it.
     fn extension<T: Default + DeserializeOwned>(
         &self,
         source: &json::Material,
         name: &str,
+        is_there: impl Fn(&T) -> bool,
     ) -> Result<T, SceneError> {
         let extension = source.extensions.as_ref().and_then(|e| e.others.get(name));
         let Some(extension) = extension else { return Ok(T::default()) };
         let field = || format!("{}: {name}", self.place);
-        T::deserialize(extension).map_err(|error| self.document.invalid(field(), error.to_string()))
-    }
-
-    /// The coat; nothing of it where its factor is zero.
-    fn clearcoat(&self, source: &json::Material) -> Result<Clearcoat, SceneError> {
-        let coat: Clearcoat = self.extension(source, CLEARCOAT)?;
-        Ok(if coat.factor == 0.0 { Clearcoat::default() } else { coat })
-    }
-
-    /// The sheen; nothing of it where its colour is black.
-    fn sheen(&self, source: &json::Material) -> Result<Sheen, SceneError> {
-        let sheen: Sheen = self.extension(source, SHEEN)?;
-        Ok(if sheen.color_factor == [0.0; 3] { Sheen::default() } else { sheen })
+        let read = T::deserialize(extension);
+        let read = read.map_err(|error| self.document.invalid(field(), error.to_string()))?;
+        Ok(if is_there(&read) { read } else { T::default() })
     }
 
     /// The anisotropy; nothing of it where its strength is zero.
     fn anisotropy(&mut self, source: &json::Material) -> Result<Anisotropy, SceneError> {
-        let mut anisotropy: Anisotropy = self.extension(source, ANISOTROPY)?;
-        if !anisotropy.rotation.is_finite() {
-            self.warn(format!("anisotropyRotation {} is not finite: 0 is used", anisotropy.rotation));
-            anisotropy.rotation = 0.0;
+        let mut anisotropy: Anisotropy = self.extension(source, ANISOTROPY, |_| true)?;
+        let rotation = &mut anisotropy.anisotropy_rotation;
+        if !rotation.is_finite() {
+            self.warn(format!("anisotropyRotation {rotation} is not finite: 0 is used"));
+            *rotation = 0.0;
         }
-        Ok(if anisotropy.strength == 0.0 { Anisotropy::default() } else { anisotropy })
-    }
-
-    /// What is let through; nothing of it where its factor is zero.
-    fn diffuse_transmission(&self, source: &json::Material) -> Result<DiffuseTransmission, SceneError> {
-        let transmission: DiffuseTransmission = self.extension(source, DIFFUSE_TRANSMISSION)?;
-        Ok(if transmission.factor == 0.0 { DiffuseTransmission::default() } else { transmission })
+        Ok(if anisotropy.anisotropy_strength == 0.0 { Anisotropy::default() } else { anisotropy })
     }
 
     /// The thin film; nothing of it where its factor is zero, or it has no thickness anywhere.
     fn iridescence(&mut self, source: &json::Material) -> Result<Iridescence, SceneError> {
-        let mut film: Iridescence = self.extension(source, IRIDESCENCE)?;
-        if film.factor == 0.0 {
+        let mut film: Iridescence = self.extension(source, IRIDESCENCE, |_| true)?;
+        if film.iridescence_factor == 0.0 {
             return Ok(Iridescence::default());
         }
-        [film.factor] = self.fractions("iridescenceFactor", [film.factor]);
-        if !(1.0..=MAX_FILM_IOR).contains(&film.ior) {
-            self.warn(format!("iridescenceIor {} is not in 1 to {MAX_FILM_IOR}: 1.3 is used", film.ior));
-            film.ior = 1.3;
+        film.iridescence_factor = self.fraction("iridescenceFactor", film.iridescence_factor);
+        let ior = &mut film.iridescence_ior;
+        if !(1.0..=MAX_FILM_IOR).contains(ior) {
+            self.warn(format!("iridescenceIor {ior} is not in 1 to {MAX_FILM_IOR}: 1.3 is used"));
+            *ior = 1.3;
         }
-        for (name, thickness) in [
-            ("iridescenceThicknessMinimum", &mut film.least_thickness),
-            ("iridescenceThicknessMaximum", &mut film.thickness),
-        ] {
+        let (least, most) =
+            (&mut film.iridescence_thickness_minimum, &mut film.iridescence_thickness_maximum);
+        for (name, thickness) in
+            [("iridescenceThicknessMinimum", &mut *least), ("iridescenceThicknessMaximum", &mut *most)]
+        {
             if !thickness.is_finite() || *thickness < 0.0 {
                 self.warn(format!("{name} {thickness} is no thickness: 0 is used"));
                 *thickness = 0.0;
             }
         }
         // Without a texture, the film is as thick as it gets
-        let is_thick =
-            film.thickness > 0.0 || (film.thickness_texture.is_some() && film.least_thickness > 0.0);
+        let is_thick = *most > 0.0 || (film.iridescence_thickness_texture.is_some() && *least > 0.0);
         Ok(if is_thick { film } else { Iridescence::default() })
     }
 
@@ -323,17 +297,14 @@ impl Reader<'_, '_> {
     }
 
     fn texture(&mut self, info: Option<&json::texture::Info>, srgb: bool) -> Result<Option<u32>, SceneError> {
-        let Some(info) = info else { return Ok(None) };
-        self.textures.texture(info.index.value(), srgb).map(Some)
+        info.map(|info| self.textures.texture(info.index.value(), srgb)).transpose()
     }
 
     fn normal_texture(
         &mut self,
         info: Option<&json::material::NormalTexture>,
-    ) -> Result<(Option<u32>, f32), SceneError> {
-        let Some(info) = info else { return Ok((None, 1.0)) };
-        let scale = if info.scale.is_finite() { info.scale } else { 1.0 };
-        Ok((Some(self.textures.texture(info.index.value(), false)?), scale))
+    ) -> Result<Option<u32>, SceneError> {
+        info.map(|info| self.textures.texture(info.index.value(), false)).transpose()
     }
 
     fn warn_of_mappings(&mut self, source: &json::Material) {
@@ -350,6 +321,10 @@ impl Reader<'_, '_> {
             self.warn(format!("{extension} is not supported: ignored"));
         }
     }
+}
+
+fn normal_scale(info: Option<&json::material::NormalTexture>) -> f32 {
+    info.map(|info| info.scale).filter(|scale| scale.is_finite()).unwrap_or(1.0)
 }
 
 /// `KHR_materials_specular`; no textures of it where its factor is zero.
@@ -373,110 +348,97 @@ const MAX_FILM_IOR: f32 = 100.0;
 
 /// `KHR_materials_iridescence`; thicknesses in nanometres.
 #[derive(Deserialize)]
-#[serde(default)]
+#[serde(default, rename_all = "camelCase")]
+#[expect(clippy::struct_field_names, reason = "fields of glTF's extensions have its names, here and below")]
 struct Iridescence {
-    #[serde(rename = "iridescenceFactor")]
-    factor: f32,
-    #[serde(rename = "iridescenceTexture")]
-    texture: Option<json::texture::Info>,
-    #[serde(rename = "iridescenceIor")]
-    ior: f32,
-    #[serde(rename = "iridescenceThicknessMinimum")]
-    least_thickness: f32,
-    #[serde(rename = "iridescenceThicknessMaximum")]
-    thickness: f32,
-    #[serde(rename = "iridescenceThicknessTexture")]
-    thickness_texture: Option<json::texture::Info>,
+    iridescence_factor: f32,
+    iridescence_texture: Option<json::texture::Info>,
+    iridescence_ior: f32,
+    iridescence_thickness_minimum: f32,
+    iridescence_thickness_maximum: f32,
+    iridescence_thickness_texture: Option<json::texture::Info>,
 }
 
 impl Default for Iridescence {
     fn default() -> Self {
         Self {
-            factor: 0.0,
-            texture: None,
-            ior: 1.3,
-            least_thickness: 100.0,
-            thickness: 400.0,
-            thickness_texture: None,
+            iridescence_factor: 0.0,
+            iridescence_texture: None,
+            iridescence_ior: 1.3,
+            iridescence_thickness_minimum: 100.0,
+            iridescence_thickness_maximum: 400.0,
+            iridescence_thickness_texture: None,
         }
     }
 }
 
 impl Iridescence {
     fn film(&self) -> Option<ThinFilm> {
-        let [weight, ior, thickness] = [self.factor, self.ior, self.thickness].map(f64::from);
+        let numbers = [self.iridescence_factor, self.iridescence_ior, self.iridescence_thickness_maximum];
+        let [weight, ior, thickness] = numbers.map(f64::from);
         (weight > 0.0).then_some(ThinFilm { weight, ior, thickness })
     }
 }
 
 /// `KHR_materials_anisotropy`.
 #[derive(Default, Deserialize)]
-#[serde(default)]
+#[serde(default, rename_all = "camelCase")]
+#[expect(clippy::struct_field_names, reason = "as above")]
 struct Anisotropy {
-    #[serde(rename = "anisotropyStrength")]
-    strength: f32,
-    #[serde(rename = "anisotropyRotation")]
-    rotation: f32,
-    #[serde(rename = "anisotropyTexture")]
-    texture: Option<json::texture::Info>,
+    anisotropy_strength: f32,
+    anisotropy_rotation: f32,
+    anisotropy_texture: Option<json::texture::Info>,
 }
 
 /// `KHR_materials_sheen`.
 #[derive(Default, Deserialize)]
-#[serde(default)]
+#[serde(default, rename_all = "camelCase")]
+#[expect(clippy::struct_field_names, reason = "as above")]
 struct Sheen {
-    #[serde(rename = "sheenColorFactor")]
-    color_factor: [f32; 3],
-    #[serde(rename = "sheenColorTexture")]
-    color_texture: Option<json::texture::Info>,
-    #[serde(rename = "sheenRoughnessFactor")]
-    roughness_factor: f32,
-    #[serde(rename = "sheenRoughnessTexture")]
-    roughness_texture: Option<json::texture::Info>,
+    sheen_color_factor: [f32; 3],
+    sheen_color_texture: Option<json::texture::Info>,
+    sheen_roughness_factor: f32,
+    sheen_roughness_texture: Option<json::texture::Info>,
 }
 
 /// `KHR_materials_clearcoat`.
 #[derive(Default, Deserialize)]
-#[serde(default)]
+#[serde(default, rename_all = "camelCase")]
+#[expect(clippy::struct_field_names, reason = "as above")]
 struct Clearcoat {
-    #[serde(rename = "clearcoatFactor")]
-    factor: f32,
-    #[serde(rename = "clearcoatTexture")]
-    texture: Option<json::texture::Info>,
-    #[serde(rename = "clearcoatRoughnessFactor")]
-    roughness_factor: f32,
-    #[serde(rename = "clearcoatRoughnessTexture")]
-    roughness_texture: Option<json::texture::Info>,
-    #[serde(rename = "clearcoatNormalTexture")]
-    normal_texture: Option<json::material::NormalTexture>,
+    clearcoat_factor: f32,
+    clearcoat_texture: Option<json::texture::Info>,
+    clearcoat_roughness_factor: f32,
+    clearcoat_roughness_texture: Option<json::texture::Info>,
+    clearcoat_normal_texture: Option<json::material::NormalTexture>,
 }
 
 /// `KHR_materials_transmission`.
 #[derive(Default, Deserialize)]
-#[serde(default)]
+#[serde(default, rename_all = "camelCase")]
 struct Transmission {
-    #[serde(rename = "transmissionFactor")]
-    factor: f32,
-    #[serde(rename = "transmissionTexture")]
-    texture: Option<json::texture::Info>,
+    transmission_factor: f32,
+    transmission_texture: Option<json::texture::Info>,
 }
 
 /// `KHR_materials_diffuse_transmission`.
 #[derive(Deserialize)]
-#[serde(default)]
+#[serde(default, rename_all = "camelCase")]
+#[expect(clippy::struct_field_names, reason = "as above")]
 struct DiffuseTransmission {
-    #[serde(rename = "diffuseTransmissionFactor")]
-    factor: f32,
-    #[serde(rename = "diffuseTransmissionTexture")]
-    texture: Option<json::texture::Info>,
-    #[serde(rename = "diffuseTransmissionColorFactor")]
-    color_factor: [f32; 3],
-    #[serde(rename = "diffuseTransmissionColorTexture")]
-    color_texture: Option<json::texture::Info>,
+    diffuse_transmission_factor: f32,
+    diffuse_transmission_texture: Option<json::texture::Info>,
+    diffuse_transmission_color_factor: [f32; 3],
+    diffuse_transmission_color_texture: Option<json::texture::Info>,
 }
 
 impl Default for DiffuseTransmission {
     fn default() -> Self {
-        Self { factor: 0.0, texture: None, color_factor: [1.0; 3], color_texture: None }
+        Self {
+            diffuse_transmission_factor: 0.0,
+            diffuse_transmission_texture: None,
+            diffuse_transmission_color_factor: [1.0; 3],
+            diffuse_transmission_color_texture: None,
+        }
     }
 }

@@ -1,4 +1,5 @@
 use super::*;
+use std::f64::consts::{PI, TAU};
 
 /// A triangulated grid of unit cells in the plane z = 0, facing +Z; `keep` says which cells are there.
 fn grid(width: u32, height: u32, keep: impl Fn(u32, u32) -> bool) -> (Vec<DVec3>, Vec<[u32; 3]>) {
@@ -12,6 +13,18 @@ fn grid(width: u32, height: u32, keep: impl Fn(u32, u32) -> bool) -> (Vec<DVec3>
         [[a, b, c], [a, c, d]]
     });
     (positions, triangles.collect())
+}
+
+/// Triangles around a middle, to places on the unit circle times `radius`.
+fn fan(count: u32, radius: impl Fn(u32) -> f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let corner = |i| DVec2::from_angle(f64::from(i) * TAU / f64::from(count)).extend(0.0) * radius(i);
+    let positions = [DVec3::ZERO].into_iter().chain((0..count).map(corner)).collect();
+    (positions, (0..count).map(|i| [0, i + 1, (i + 1) % count + 1]).collect())
+}
+
+/// The outlines of triangles without texture coordinates, to the digit.
+fn plain((positions, triangles): &(Vec<DVec3>, Vec<[u32; 3]>)) -> Outlines {
+    outlines(positions, triangles, 0.0, None)
 }
 
 /// Area times normal of all polygons.
@@ -37,8 +50,7 @@ fn a_quad_is_one_outline_of_four_vertices() {
 
 #[test]
 fn vertices_inside_and_on_straight_edges_go() {
-    let (positions, triangles) = grid(7, 5, |_, _| true);
-    let merged = outlines(&positions, &triangles, 0.0, None);
+    let merged = plain(&grid(7, 5, |_, _| true));
     assert_eq!(counts(&merged), [4]);
     assert_eq!(total_area(&merged), DVec3::Z * 35.0);
 }
@@ -50,14 +62,8 @@ fn concave_outlines_stay_whole() {
     assert_eq!((counts(&merged), merged.split), (vec![6], 0), "an L");
     assert_eq!(total_area(&merged), DVec3::Z * 7.0);
 
-    // A star of ten vertices around its middle
-    let mut positions = vec![DVec3::ZERO];
-    for i in 0..10 {
-        let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 10.0).sin_cos();
-        positions.push(DVec3::new(cos, sin, 0.0) * if i % 2 == 0 { 1.0 } else { 0.4 });
-    }
-    let triangles: Vec<[u32; 3]> = (0..10).map(|i| [0, i + 1, (i + 1) % 10 + 1]).collect();
-    assert_eq!(counts(&outlines(&positions, &triangles, 0.0, None)), [10]);
+    let star = fan(10, |i| if i % 2 == 0 { 1.0 } else { 0.4 });
+    assert_eq!(counts(&plain(&star)), [10]);
 }
 
 #[test]
@@ -74,21 +80,18 @@ fn vertices_that_are_not_shared_are_welded() {
 
 #[test]
 fn islands_are_outlines_of_their_own() {
-    let (positions, triangles) = grid(5, 1, |x, _| x != 2);
-    let merged = outlines(&positions, &triangles, 0.0, None);
+    let merged = plain(&grid(5, 1, |x, _| x != 2));
     assert_eq!((counts(&merged), merged.bent, merged.split), (vec![4, 4], false, 0));
 }
 
 #[test]
 fn corners_that_touch_do_not_connect() {
-    let (positions, triangles) = grid(2, 2, |x, y| x == y);
-    assert_eq!(counts(&outlines(&positions, &triangles, 0.0, None)), [4, 4]);
+    assert_eq!(counts(&plain(&grid(2, 2, |x, y| x == y))), [4, 4]);
 }
 
 #[test]
 fn a_ring_becomes_one_outline_around_its_hole() {
-    let (positions, triangles) = grid(5, 5, |x, y| !(1..4).contains(&x) || !(1..4).contains(&y));
-    let merged = outlines(&positions, &triangles, 0.0, None);
+    let merged = plain(&grid(5, 5, |x, y| !(1..4).contains(&x) || !(1..4).contains(&y)));
     assert_eq!((counts(&merged), merged.split, merged.bent), (vec![4 + 4 + 2], 0, false));
     assert_eq!(total_area(&merged), DVec3::Z * 16.0);
     // The bridge is all that is there twice
@@ -99,8 +102,7 @@ fn a_ring_becomes_one_outline_around_its_hole() {
 
 #[test]
 fn many_holes_are_covered_once() {
-    let (positions, triangles) = grid(9, 9, |x, y| x % 2 == 0 || y % 2 == 0);
-    let merged = outlines(&positions, &triangles, 0.0, None);
+    let merged = plain(&grid(9, 9, |x, y| x % 2 == 0 || y % 2 == 0));
     assert_eq!(total_area(&merged), DVec3::Z * (81.0 - 16.0));
     assert_eq!((counts(&merged), merged.split), (vec![4 + 16 * (4 + 2)], 0));
 }
@@ -108,8 +110,7 @@ fn many_holes_are_covered_once() {
 #[test]
 fn holes_that_touch_make_several_simple_outlines() {
     // Two holes that share a corner
-    let (positions, triangles) = grid(4, 4, |x, y| !((x, y) == (1, 1) || (x, y) == (2, 2)));
-    let merged = outlines(&positions, &triangles, 0.0, None);
+    let merged = plain(&grid(4, 4, |x, y| !((x, y) == (1, 1) || (x, y) == (2, 2))));
     assert_eq!(total_area(&merged), DVec3::Z * 14.0);
     assert!(merged.split > 0);
     // Each outline is simple: no vertex twice
@@ -142,8 +143,7 @@ fn cube(n: u32, shape: impl Fn(DVec3) -> DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
 
 #[test]
 fn a_box_is_six_quads() {
-    let (positions, triangles) = cube(3, |p| p);
-    let merged = outlines(&positions, &triangles, 0.0, None);
+    let merged = plain(&cube(3, |p| p));
     assert_eq!((counts(&merged), merged.bent, merged.split), (vec![4; 6], true, 0));
     // It is closed, and each face shows outwards
     assert!(total_area(&merged).length() < 1e-12);
@@ -169,7 +169,7 @@ fn a_fine_cylinder_does_not_drift_flat() {
     let strips = 3600_u32;
     let positions: Vec<DVec3> = (0..strips * 2)
         .map(|i| {
-            let (sin, cos) = (f64::from(i / 2) * std::f64::consts::TAU / f64::from(strips)).sin_cos();
+            let (sin, cos) = (f64::from(i / 2) * TAU / f64::from(strips)).sin_cos();
             DVec3::new(cos, sin, f64::from(i % 2))
         })
         .collect();
@@ -206,18 +206,10 @@ fn copies_and_slivers_are_left_out() {
 #[test]
 fn curved_outlines_keep_their_shape() {
     // 2000 vertices on a circle: dropping them one by one would let the error grow
-    let count = 2000;
-    let mut positions = vec![DVec3::ZERO];
-    positions.extend((0..count).map(|i| {
-        let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / f64::from(count)).sin_cos();
-        DVec3::new(cos, sin, 0.0)
-    }));
-    let triangles: Vec<[u32; 3]> =
-        (0..count as u32).map(|i| [0, i + 1, (i + 1) % count as u32 + 1]).collect();
-    let merged = outlines(&positions, &triangles, 0.0, None);
+    let merged = plain(&fan(2000, |_| 1.0));
     assert_eq!(merged.polygons.len(), 1);
     // An outline within 2.8e-5 of the circle loses at most that times its circumference
-    assert!((total_area(&merged).z - std::f64::consts::PI).abs() < 2.8e-5 * std::f64::consts::TAU);
+    assert!((total_area(&merged).z - PI).abs() < 2.8e-5 * TAU);
     assert!(merged.polygons[0].len() < 1000);
 }
 
@@ -302,15 +294,9 @@ fn a_mapping_that_bends_follows_the_triangles() {
 
 #[test]
 fn a_fan_is_one_outline_however_it_is_turned() {
-    let count = 500;
     let turn = glam::DQuat::from_rotation_x(0.7) * glam::DQuat::from_rotation_y(0.4);
-    let mut flat = vec![DVec2::ZERO];
-    flat.extend(
-        (0..count).map(|i| DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / f64::from(count))),
-    );
-    let positions: Vec<DVec3> = flat.iter().map(|p| turn * p.extend(0.0)).collect();
-    let triangles: Vec<[u32; 3]> =
-        (0..count as u32).map(|i| [0, i + 1, (i + 1) % count as u32 + 1]).collect();
+    let (mut positions, triangles) = fan(500, |_| 1.0);
+    positions.iter_mut().for_each(|p| *p = turn * *p);
     let merged = mapped(&positions, &triangles, |p| (turn.inverse() * p).truncate() * 0.5 + 0.5);
     assert_eq!((merged.polygons.len(), merged.seams), (1, false));
     // The twin: a mapping along the edge and out from the middle bends everywhere; a few neighbours are

@@ -72,7 +72,6 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
 
     let mut cases = hosts(&root.join(HOST), &library, arguments.all);
     cases.extend(examples(&root.join(EXAMPLES))?);
-    cases.extend(host_g_buffer(&folder));
     cases.extend(host_bridges(&folder));
     let in_one = cases.iter().filter(|case| case.compute && case.is_of_one_file());
     let in_one: Vec<Case> = in_one.map(|case| Case { include: INCLUDES[1], ..case.clone() }).collect();
@@ -226,25 +225,11 @@ fn examples(folder: &Path) -> Result<Vec<Case>, TaskError> {
     Ok(cases)
 }
 
-/// The exported kernel with the example's G-buffer.
-fn host_g_buffer(folder: &Path) -> Vec<Case> {
-    let case = |tool| Case {
-        tool,
-        compute: true,
-        shader: folder.join("kernels/shade.comp"),
-        name: "a G-buffer of the host".into(),
-        macros: vec![("AREALIGHT_HOST_G_BUFFER".into(), "1".into())],
-        naga: false,
-        lacks: None,
-        include: INCLUDES[0],
-    };
-    [Tool::Glslang, Tool::Glslc].map(case).to_vec()
-}
-
-/// The exported kernels with the examples' shadows and blocker, and with an acceleration structure.
+/// The exported kernels with the examples' G-buffer, shadows and blocker, and with an acceleration structure.
 fn host_bridges(folder: &Path) -> Vec<Case> {
     let hosts = [
-        ("shade", &["AREALIGHT_HOST_VISIBILITY"][..], "shadows of the host"),
+        ("shade", &["AREALIGHT_HOST_G_BUFFER"][..], "a G-buffer of the host"),
+        ("shade", &["AREALIGHT_HOST_VISIBILITY"], "shadows of the host"),
         ("shadow_rays", &["AREALIGHT_HOST_BLOCKER"], "a blocker of the host"),
         ("shadow_rays", &["AREALIGHT_HOST_ALPHA"], "cut out by the host"),
         ("shadow_rays", &["AREALIGHT_RAY_QUERY"], "an acceleration structure"),

@@ -194,19 +194,14 @@ fn fields_of_ktx2_that_no_table_has_are_named() {
     ] {
         assert_eq!(refusal(&with_word(&file, at, word)), expected);
     }
-    assert!(
-        refusal(&with_word(&file, 12, 109))
-            .starts_with("level 0: damaged or unsupported KTX2 data: 864 bytes")
-    );
-    assert!(
-        refusal(&with_word(&file, 80, u32::MAX)).starts_with("level 0: damaged or unsupported KTX2 data: ")
-    );
-    assert!(
-        refusal(&with_word(&file, 84, u32::MAX)).starts_with("level 0: damaged or unsupported KTX2 data: ")
-    );
-    assert!(
-        refusal(&with_word(&file, 56, u32::MAX)).starts_with("key/value data: damaged or unsupported KTX2")
-    );
+    for (at, word, expected) in [
+        (12, 109, "level 0: damaged or unsupported KTX2 data: 864 bytes"),
+        (80, u32::MAX, "level 0: damaged or unsupported KTX2 data: "),
+        (84, u32::MAX, "level 0: damaged or unsupported KTX2 data: "),
+        (56, u32::MAX, "key/value data: damaged or unsupported KTX2"),
+    ] {
+        assert!(refusal(&with_word(&file, at, word)).starts_with(expected), "{at}");
+    }
 }
 
 #[test]
@@ -269,21 +264,16 @@ fn attributes_are_checked_as_those_of_exr() {
             let missing = spoil(name, "A");
             assert_eq!(missing, ReadError::MissingAttribute { attribute: name });
         }
-        let message = |from, to| spoil(from, to).to_string();
-        assert_eq!(
-            message("arealight.version\x004", "arealight.version\x003"),
-            "attribute `arealight.version` is `3`; this program reads `4`"
-        );
-        assert_eq!(
-            message("arealight.matrices\x002", "arealight.matrices\x005"),
-            "attribute `arealight.matrices` is `5`; this program reads `1 to 4`"
-        );
-        assert_eq!(
-            message("arealight.grazing_dip\0none", "arealight.grazing_dip\0nine"),
-            "attribute `arealight.grazing_dip` is `nine`; this program reads `none or ggx`"
-        );
-        let not_text = "attribute `arealight.brdf` is `a\\0test`; this program reads `a string`";
-        assert_eq!(message("arealight.brdf\0a ", "arealight.brdf\0a\0"), not_text);
+        for (name, from, to, expected) in [
+            ("version", "4", "3", "`3`; this program reads `4`"),
+            ("matrices", "2", "5", "`5`; this program reads `1 to 4`"),
+            ("grazing_dip", "none", "nine", "`nine`; this program reads `none or ggx`"),
+            ("brdf", "a ", "a\0", "`a\\0test`; this program reads `a string`"),
+        ] {
+            let of = |value: &str| format!("arealight.{name}\0{value}");
+            let expected = format!("attribute `arealight.{name}` is {expected}");
+            assert_eq!(spoil(&of(from), &of(to)).to_string(), expected);
+        }
         // One matrix is another table
         assert!(matches!(
             spoil("arealight.matrices\x002", "arealight.matrices\x001"),

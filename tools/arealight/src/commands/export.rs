@@ -151,8 +151,7 @@ fn summary(arguments: &Arguments, files: &[File], plan: &Plan) -> String {
     let _ = writeln!(
         text,
         "Next: add {folder}/include to your compiler's include folders, and see {folder}/manifest.json for \
-        the \
-         bridges, and {folder}/examples"
+        the bridges, and {folder}/examples"
     );
     text
 }

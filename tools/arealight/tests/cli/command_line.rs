@@ -1,28 +1,9 @@
 //! The command line as a user meets it: exit codes, messages, files.
 
-use crate::common::{device, run};
+use crate::common::{device, json_of, picture, printed, refuse, refused, run, scene, text};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-/// Runs a command that must fail with `code` and say all of `words`, without a panic.
-fn refuse(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
-    let output = run(folder, arguments);
-    let said = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
-    assert!(!said.contains("panicked"), "{arguments:?}: {said}");
-    for word in words {
-        assert!(said.contains(word), "{arguments:?} does not say '{word}': {said}");
-    }
-}
-
-fn scene(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name).display().to_string()
-}
 
 fn write(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
     let path = folder.join(name);
@@ -33,10 +14,9 @@ fn write(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
 #[test]
 fn help_and_version() {
     let folder = tempfile::tempdir().unwrap();
-    let help = run(folder.path(), &["--help"]);
-    assert!(help.status.success());
+    let help = printed(&run(folder.path(), &["--help"]));
     for command in ["render", "eval", "effects", "fit", "inspect", "devices", "Exit codes", "--tolerance"] {
-        assert!(text(&help.stdout).contains(command), "{command}");
+        assert!(help.contains(command), "{command}");
     }
     // A long list is in groups
     let render = text(&run(folder.path(), &["render", "--help"]).stdout);
@@ -45,9 +25,7 @@ fn help_and_version() {
     }
     assert!(run(folder.path(), &["--version"]).status.success());
     // Without a command it says what there is
-    let nothing = run(folder.path(), &[]);
-    assert_eq!(nothing.status.code(), Some(2));
-    assert!(text(&nothing.stderr).contains("Commands:"), "{}", text(&nothing.stderr));
+    refuse(folder.path(), &[], 2, &["Commands:"]);
 }
 
 #[test]
@@ -142,9 +120,7 @@ fn inspect_draws_the_pyramid_of_a_scene_and_of_images() {
     let folder = tempfile::tempdir().unwrap();
     let Some(()) = device() else { return };
     let inspect = |arguments: &[&str]| {
-        let output = run(folder.path(), &[&["inspect", "--json", "--pyramid"], arguments].concat());
-        assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
-        serde_json::from_slice::<serde_json::Value>(&output.stdout).expect("--json prints JSON")
+        json_of(&run(folder.path(), &[&["inspect", "--json", "--pyramid"], arguments].concat()))
     };
     // The two textures of a scene
     let screen = scene("screen.glb");
@@ -155,8 +131,7 @@ fn inspect_draws_the_pyramid_of_a_scene_and_of_images() {
     );
     assert!(card["texture"].as_str().unwrap().ends_with("'test card', shown by 'television'"), "{card}");
     inspect(&[&screen, "--layer", "1", "-o", "sign.png"]);
-    let picture = |name: &str| image::open(folder.path().join(name)).unwrap().to_rgb8();
-    assert!(picture("card.png") != picture("sign.png"));
+    assert!(picture(folder.path(), "card.png") != picture(folder.path(), "sign.png"));
 
     // A constant stays what it is: sRGB 188 is 0.503 linear, which half precision holds to 2.5e-4
     image::RgbImage::from_pixel(50, 20, image::Rgb([188; 3])).save(folder.path().join("gray.png")).unwrap();
@@ -182,12 +157,9 @@ fn inspect_draws_the_pyramid_of_a_scene_and_of_images() {
 #[test]
 fn inspect_draws_lobes_entries_and_errors() {
     let folder = tempfile::tempdir().unwrap();
-    let inspect = |arguments: &[&str]| {
-        let output = run(folder.path(), &[&["inspect", "--json"], arguments].concat());
-        assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
-        serde_json::from_slice::<serde_json::Value>(&output.stdout).expect("--json prints JSON")
-    };
-    let picture = |name: &str| image::open(folder.path().join(name)).unwrap().to_rgb8();
+    let inspect =
+        |arguments: &[&str]| json_of(&run(folder.path(), &[&["inspect", "--json"], arguments].concat()));
+    let picture = |name: &str| picture(folder.path(), name);
 
     // The lobes depend on the reflectance and the level
     let summary = inspect(&["-o", "metal.png"]);
@@ -200,9 +172,7 @@ fn inspect_draws_lobes_entries_and_errors() {
     assert!(metal != one && one != two);
 
     // A small table is worse than the one that is built in; it is drawn in a column more
-    assert!(
-        run(folder.path(), &["fit", "--size", "4", "--matrices", "1", "-o", "small.exr"]).status.success()
-    );
+    printed(&run(folder.path(), &["fit", "--size", "4", "--matrices", "1", "-o", "small.exr"]));
     inspect(&["small.exr", "--entries", "-o", "small.png"]);
     inspect(&["--entries", "-o", "large.png"]);
     assert!(picture("small.png").height() < picture("large.png").height(), "one matrix, a row less");
@@ -237,9 +207,8 @@ fn devices_that_are_not_there_are_exit_code_4() {
         .current_dir(folder.path())
         .output()
         .unwrap();
-    let said = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(4), "{said}");
-    assert!(said.contains("mesa-vulkan-drivers"), "says what to install: {said}");
+    // It says what to install
+    refused(&output, 4, &["mesa-vulkan-drivers"]);
 }
 
 #[test]
@@ -256,9 +225,7 @@ fn a_scene_without_lights_or_triangles_is_rendered_with_a_warning() {
 #[test]
 fn effects_are_listed_with_what_needs_them() {
     let folder = tempfile::tempdir().unwrap();
-    let output = run(folder.path(), &["effects", &scene("screen.glb"), "--json"]);
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).expect("--json prints JSON");
+    let summary = json_of(&run(folder.path(), &["effects", &scene("screen.glb"), "--json"]));
     let effects = summary["effects"].as_array().unwrap();
     assert_eq!(effects.len(), arealight::Effects::all().iter().count());
     let effect = |name: &str| effects.iter().find(|e| e["effect"] == name).unwrap();
@@ -266,8 +233,7 @@ fn effects_are_listed_with_what_needs_them() {
     assert_eq!(effect("textured")["required"], true);
     assert_eq!(effect("tube")["required"], false);
     assert!(effect("tube")["reason"].is_null(), "{summary:#}");
-    let output = run(folder.path(), &["effects", &scene("sweep.glb")]);
-    let told = text(&output.stdout);
+    let told = printed(&run(folder.path(), &["effects", &scene("sweep.glb")]));
     for words in ["diffuse", "material '", "This scene's set: diffuse, glossy, coupled\n"] {
         assert!(told.contains(words), "{words}: {told}");
     }
@@ -280,11 +246,10 @@ fn a_stated_set_that_a_surface_needs_more_than_is_said() {
     let screen = scene("screen.glb");
     for (surfaces, warned) in [("diffuse,glossy", false), ("diffuse", true)] {
         let output = run(folder.path(), &["render", &screen, "--size", "16x9", "--surfaces", surfaces]);
-        let said = text(&output.stderr);
-        assert!(output.status.success(), "{said}");
+        let (told, said) = (printed(&output), text(&output.stderr));
         assert_eq!(said.contains("--surfaces is without glossy: material '"), warned, "{said}");
         let expected = format!("surfaces {}", surfaces.replace(',', ", "));
-        assert!(text(&output.stdout).contains(&expected), "{}", text(&output.stdout));
+        assert!(told.contains(&expected), "{told}");
     }
 }
 
@@ -293,12 +258,10 @@ fn render_makes_pictures_and_says_where() {
     let folder = tempfile::tempdir().unwrap();
     let Some(()) = device() else { return };
     let room = scene("room.glb");
-    let output = run(folder.path(), &["render", &room, "--size", "64x36", "--json"]);
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).expect("--json prints JSON");
+    let summary = json_of(&run(folder.path(), &["render", &room, "--size", "64x36", "--json"]));
     assert_eq!(summary["picture"], "out/room.png");
     assert!(summary["effects"].as_array().is_some_and(|effects| !effects.is_empty()));
-    let picture = image::open(folder.path().join("out/room.png")).unwrap().to_rgb8();
+    let picture = picture(folder.path(), "out/room.png");
     assert_eq!(picture.dimensions(), (64, 36));
     assert!(picture.pixels().any(|p| p.0.iter().any(|&c| c > 100)), "something is lit");
 
@@ -329,12 +292,10 @@ fn shadows_go_on_where_they_are_noisy() {
     let folder = tempfile::tempdir().unwrap();
     let Some(()) = device() else { return };
     let rendered = |seed: &str, more: &[&str]| {
-        let (demo, picture) = (scene("demo.glb"), folder.path().join("seen.png"));
+        let demo = scene("demo.glb");
         let common = ["render", &demo, "--size", "288x160", "--supersample", "1", "--json", "-o", "seen.png"];
-        let output = run(folder.path(), &[&common[..], &["--seed", seed], more].concat());
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        let summary = serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap();
-        (image::open(picture).unwrap().to_rgb8(), summary)
+        let summary = json_of(&run(folder.path(), &[&common[..], &["--seed", seed], more].concat()));
+        (picture(folder.path(), "seen.png"), summary)
     };
     let ([(a, summary), (b, _)], [(once, _), (other, _)]) = (
         ["1", "2"].map(|seed| rendered(seed, &["--shadow-noise", "0.3"])),
@@ -355,9 +316,7 @@ fn shadows_go_on_until_their_noise_is_low() {
     let rendered = |name: &str, more: &[&str]| {
         let sweep = scene("sweep.glb");
         let common = ["render", &sweep, "--size", "48x32", "--supersample", "1", "--json", "-o", name];
-        let output = run(folder.path(), &[&common, more].concat());
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        serde_json::from_slice::<serde_json::Value>(&output.stdout).expect("--json prints JSON")
+        json_of(&run(folder.path(), &[&common, more].concat()))
     };
     let pixels = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
     let one = ["--shadows", "rays:1"];
@@ -389,12 +348,8 @@ fn pictures_are_compared() {
     picture("a.exr", 8, 1.0);
     picture("b.exr", 8, 1.1);
     picture("small.exr", 4, 1.0);
-    let same = run(folder.path(), &["compare", "a.exr", "a.exr", "--tolerance", "0"]);
-    assert!(
-        same.status.success() && text(&same.stdout).contains("RMSE / mean    0.000 %"),
-        "{}",
-        text(&same.stdout)
-    );
+    let same = printed(&run(folder.path(), &["compare", "a.exr", "a.exr", "--tolerance", "0"]));
+    assert!(same.contains("RMSE / mean    0.000 %"), "{same}");
     let apart =
         run(folder.path(), &["compare", "b.exr", "a.exr", "--json", "-o", "map.png", "--tolerance", "0.01"]);
     assert_eq!(apart.status.code(), Some(1));
@@ -412,10 +367,10 @@ fn pictures_are_compared() {
 fn shells_and_man_know_the_program() {
     let folder = tempfile::tempdir().unwrap();
     for shell in ["bash", "zsh", "fish"] {
-        let script = run(folder.path(), &["completions", shell]);
-        assert!(script.status.success() && text(&script.stdout).contains("inspect"), "{shell}");
+        let script = printed(&run(folder.path(), &["completions", shell]));
+        assert!(script.contains("inspect"), "{shell}");
     }
-    assert!(run(folder.path(), &["man", "."]).status.success());
+    printed(&run(folder.path(), &["man", "."]));
     for page in ["arealight.1", "arealight-render.1", "arealight-bench-shadows.1"] {
         let text = std::fs::read_to_string(folder.path().join(page)).unwrap();
         assert!(text.contains(".SH"), "{page}");
@@ -439,8 +394,7 @@ fn verdicts_have_colours_where_they_are_wanted_and_tables_with_verbose() {
             .unwrap()
     };
     let plain = run(&[], &[]);
-    assert_eq!(plain.status.code(), Some(0), "{}", text(&plain.stderr));
-    let (said, green) = (text(&plain.stdout), "\u{1b}[32mEvery promise of ours is kept\u{1b}[0m");
+    let (said, green) = (printed(&plain), "\u{1b}[32mEvery promise of ours is kept\u{1b}[0m");
     assert!(said.contains("Every promise of ours is kept") && !said.contains('\u{1b}'), "{said}");
     assert!(!said.contains("  crossing ") && plain.stderr.is_empty(), "{said}");
     assert!(text(&run(&[], &[("CLICOLOR_FORCE", "1")]).stdout).contains(green));

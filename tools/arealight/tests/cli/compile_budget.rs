@@ -3,7 +3,7 @@
 //! the same by `VK_ICD_FILENAMES`. Time is in units of work of a compiler's kind, done by this process before
 //! and after, so that a slow or busy machine changes nothing.
 
-use crate::common::device;
+use crate::common::{device, scene};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -51,11 +51,10 @@ fn yardstick() -> f64 {
 }
 
 /// Renders a few pixels of a scene, and says what that took.
-fn render(scene: &str) -> Used {
-    let scene = format!("{}/../../scenes/{scene}", env!("CARGO_MANIFEST_DIR"));
+fn render(name: &str) -> Used {
     let picture = Path::new(env!("CARGO_TARGET_TMPDIR")).join("compile-budget.png");
     let mut child = Command::new(env!("CARGO_BIN_EXE_arealight"))
-        .args(["render", &scene, "--size", "16x16", "--supersample", "1", "-o"])
+        .args(["render", &scene(name), "--size", "16x16", "--supersample", "1", "-o"])
         .arg(picture)
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -65,7 +64,7 @@ fn render(scene: &str) -> Used {
     loop {
         last = used(child.id()).unwrap_or(last);
         if let Some(status) = child.try_wait().expect("the command is ours") {
-            assert!(status.success(), "{scene}: {status}");
+            assert!(status.success(), "{name}: {status}");
             return last;
         }
         std::thread::sleep(Duration::from_millis(10));

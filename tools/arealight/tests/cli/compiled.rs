@@ -1,5 +1,6 @@
 //! `arealight bench compiled`, and null hardware, which computes nothing.
 
+use crate::common::{reference, run, scene, text};
 use arealight_engine::host::testing::{radv_or_skip, ran, skip};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -12,13 +13,21 @@ fn checked_in() -> PathBuf {
 }
 
 fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+    text(&output.stdout) + &text(&output.stderr)
+}
+
+/// Asserts that a run ended with `code` and said all of `words`.
+#[track_caller]
+fn ends(output: &Output, code: i32, words: &[&str]) {
+    let said = said(output);
+    assert_eq!(output.status.code(), Some(code), "{said}");
+    assert!(words.iter().all(|word| said.contains(word)), "{said}");
 }
 
 /// Compiles for a family with these arguments.
 fn compile(arguments: &[&str]) -> Output {
     let folder = tempfile::tempdir().unwrap();
-    crate::common::run(folder.path(), &[&["bench", "compiled"], arguments].concat())
+    run(folder.path(), &[&["bench", "compiled"], arguments].concat())
 }
 
 /// Compiles the rows that contain `only`, and holds them against a file.
@@ -92,8 +101,7 @@ fn a_file_of_less_fails() {
     assert!(doctored(&|_| true).status.success());
     for (name, part) in [("VGPRs", 0.99), ("Inverse Throughput", 0.96)] {
         let output = doctored(&less(name, part));
-        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
-        assert!(said(&output).contains("FAILED: "), "{}", said(&output));
+        ends(&output, 1, &["FAILED: "]);
     }
     // Within 3 %
     assert!(doctored(&less("Inverse Throughput", 0.98)).status.success());
@@ -105,42 +113,32 @@ fn a_file_of_less_fails() {
 
     // A row that is not there
     let output = doctored(&|row| row["kernel"] != "texture_load");
-    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
-    assert!(said(&output).contains("the file has no such row") && said(&output).contains("--update"));
+    ends(&output, 1, &["the file has no such row", "--update"]);
 
     // Another version of the driver is no comparison
     std::fs::write(&file, text.replace("Mesa", "Mesa 0.")).unwrap();
     let output = check(only, &file);
-    assert_eq!(output.status.code(), Some(NO_COMPILER), "{}", said(&output));
-    assert!(said(&output).contains("can't be compared"), "{}", said(&output));
+    ends(&output, NO_COMPILER, &["can't be compared"]);
 }
 
 #[test]
 fn what_cannot_be_compiled_is_said() {
     let output = compile(&["--only", "nothing like this"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(said(&output).contains("--only") && said(&output).contains("shade: quads, exact"));
-    let output = compile(&["--family", "navi21;reboot"]);
-    assert_eq!(output.status.code(), Some(2));
-    let output = compile(&["--check", "/nonexistent/compiled.json"]);
-    assert_eq!(output.status.code(), Some(3), "{}", said(&output));
+    ends(&output, 2, &["--only", "shade: quads, exact"]);
+    ends(&compile(&["--family", "navi21;reboot"]), 2, &[]);
+    ends(&compile(&["--check", "/nonexistent/compiled.json"]), 3, &[]);
     if std::env::var_os("AREALIGHT_COMPILERS").is_none() {
-        let output = compile(&["--family", "tgl"]);
-        assert_eq!(output.status.code(), Some(NO_COMPILER), "{}", said(&output));
-        assert!(said(&output).contains("tools/compilers.sh"), "{}", said(&output));
+        ends(&compile(&["--family", "tgl"]), NO_COMPILER, &["tools/compilers.sh"]);
     }
-    let output = compile(&["--device", "no such device", "--only", "texture_load"]);
-    assert_eq!(output.status.code(), Some(4), "{}", said(&output));
+    ends(&compile(&["--device", "no such device", "--only", "texture_load"]), 4, &[]);
 
     if radv_or_skip().is_none() {
         return;
     }
     ran();
     let output = compile(&["--family", "navi9000", "--only", "texture_load"]);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    assert!(said(&output).contains("no family of GPU 'navi9000'"), "{}", said(&output));
-    let output = compile(&["--only", "texture_load", "--save", "/nonexistent/compiled.json"]);
-    assert_eq!(output.status.code(), Some(5), "{}", said(&output));
+    ends(&output, 2, &["no family of GPU 'navi9000'"]);
+    ends(&compile(&["--only", "texture_load", "--save", "/nonexistent/compiled.json"]), 5, &[]);
 }
 
 #[test]
@@ -155,8 +153,7 @@ fn without_the_driver_the_message_says_what_to_install() {
         .env_remove("VK_ICD_FILENAMES")
         .output()
         .unwrap();
-    assert_eq!(output.status.code(), Some(NO_COMPILER), "{}", said(&output));
-    assert!(said(&output).contains("apt-get install mesa-vulkan-drivers"), "{}", said(&output));
+    ends(&output, NO_COMPILER, &["apt-get install mesa-vulkan-drivers"]);
 }
 
 #[test]
@@ -173,16 +170,12 @@ fn null_hardware_is_listed_and_never_used() {
     // Its name says which chip it is; another's statistics are not taken for it
     for (chip, code) in [("navi21", 0), ("vega10", 2)] {
         let output = on_null(&["bench", "compiled", "--only", "texture_load", "--on-null-hardware", chip]);
-        assert_eq!(output.status.code(), Some(code), "{}", said(&output));
+        ends(&output, code, &[]);
     }
-    let devices = on_null(&["devices"]);
-    assert_eq!(devices.status.code(), Some(4), "{}", said(&devices));
-    let text = said(&devices);
-    assert!(text.contains("Null hardware (RADV NAVI21): cannot be used: it compiles shaders"), "{text}");
+    let words = "Null hardware (RADV NAVI21): cannot be used: it compiles shaders";
+    ends(&on_null(&["devices"]), 4, &[words]);
 
-    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/sweep.glb").display().to_string();
-    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/reference/cases.json");
-    let cases = cases.display().to_string();
+    let (scene, cases) = (scene("sweep.glb"), reference("cases.json"));
     let render: &[&str] = &["render", &scene, "--size", "16x16", "-o", "picture.png"];
     for arguments in [
         render,
@@ -191,10 +184,8 @@ fn null_hardware_is_listed_and_never_used() {
         &["eval", &cases],
         &["bench", "stability", "--samples", "1"],
     ] {
-        let output = on_null(arguments);
-        let text = said(&output);
-        assert_eq!(output.status.code(), Some(4), "{arguments:?}: {text}");
-        assert!(text.contains("Null hardware") && text.contains("runs none"), "{arguments:?}: {text}");
+        println!("{arguments:?}");
+        ends(&on_null(arguments), 4, &["Null hardware", "runs none"]);
     }
     assert!(!folder.path().join("picture.png").exists());
 }
@@ -225,8 +216,6 @@ fn a_device_that_computes_is_taken_before_null_hardware() {
     }
     assert!(of_null(false).iter().any(|one| one["default"] == true));
 
-    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/reference/cases.json");
-    let output = run(&["eval", "--device", "null", &cases.display().to_string()]);
-    assert_eq!(output.status.code(), Some(4), "{}", said(&output));
-    assert!(said(&output).contains("Null hardware (RADV NAVI21) cannot be used"), "{}", said(&output));
+    let output = run(&["eval", "--device", "null", &reference("cases.json")]);
+    ends(&output, 4, &["Null hardware (RADV NAVI21) cannot be used"]);
 }

@@ -1,6 +1,6 @@
 //! `arealight eval` as a user runs it.
 
-use crate::common::device;
+use crate::common::{device, json_of, printed, reference, refused, text};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -19,16 +19,8 @@ fn precisely(arguments: &[&str]) -> Output {
     eval(&[arguments, lobes, &["--form-factor", "difference"]].concat())
 }
 
-fn reference(file: &str) -> String {
-    format!("{}/../../tests/data/reference/{file}", env!("CARGO_MANIFEST_DIR"))
-}
-
 fn temporary(file: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(file)
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
 }
 
 /// The methods that can be run here: without a device not the GPU's.
@@ -39,9 +31,18 @@ fn methods<T>(all: impl IntoIterator<Item = T>, name: impl Fn(&T) -> &str) -> im
 
 /// What `eval --json` says of the measures, of answers that must be given.
 fn measures(arguments: &[&str]) -> Value {
-    let output = precisely(&[arguments, &["--json"]].concat());
-    assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    json_of(&precisely(&[arguments, &["--json"]].concat()))
+}
+
+/// What is answered, which must be possible.
+fn answers(arguments: &[&str]) -> Vec<Value> {
+    json_of(&eval(arguments))["results"].as_array().unwrap().clone()
+}
+
+/// That of the summary's families which has polygons without a texture on this material.
+fn family<'a>(summary: &'a Value, material: &str) -> &'a Value {
+    let is_it = |f: &&Value| f["shape"] == "polygon" && f["textured"] == false && f["material"] == material;
+    summary["families"].as_array().unwrap().iter().find(is_it).unwrap()
 }
 
 fn json(path: impl AsRef<Path>) -> Value {
@@ -55,14 +56,11 @@ fn write(file: &str, text: &str) -> String {
 
 #[test]
 fn answers_come_in_the_cases_order_with_reasons_for_those_that_are_missing() {
-    let output = eval(&[&reference("cases.json"), "--on", "truth"]);
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    let answers: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let answers = answers(&[&reference("cases.json"), "--on", "truth"]);
     let cases = json(reference("cases.json"));
-    let names =
-        |values: &Value| values.as_array().unwrap().iter().map(|v| v["name"].clone()).collect::<Vec<_>>();
-    assert_eq!(names(&answers["results"]), names(&cases["cases"]));
-    for answer in answers["results"].as_array().unwrap() {
+    let names = |values: &[Value]| values.iter().map(|v| v["name"].clone()).collect::<Vec<_>>();
+    assert_eq!(names(&answers), names(cases["cases"].as_array().unwrap()));
+    for answer in answers {
         assert_eq!(answer["radiance"].is_null(), answer["reason"].is_string(), "{answer}");
     }
 }
@@ -78,14 +76,9 @@ fn each_method_meets_its_measure() {
         let out = temporary(&format!("{method}.json"));
         let arguments =
             ["--on", method, "--against", &reference("truth.json"), "--json", "-o", out.to_str().unwrap()];
-        let output = precisely(&[&[reference("cases.json").as_str()], &arguments[..]].concat());
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let summary = json_of(&precisely(&[&[reference("cases.json").as_str()], &arguments[..]].concat()));
         let measure = |material: &str| {
-            let families = summary["families"].as_array().unwrap().iter();
-            let mut matching = families
-                .filter(|f| f["shape"] == "polygon" && f["textured"] == false && f["material"] == material);
-            let family = matching.next().unwrap();
+            let family = family(&summary, material);
             assert_eq!(family["unanswered"], 0);
             family["rmse_over_mean"].as_f64().unwrap()
         };
@@ -230,8 +223,7 @@ fn cases_with_films() -> Value {
 fn thin_films_are_answered_by_every_method() {
     let cases = write("films.json", &cases_with_films().to_string());
     let truth = write("films-truth.json", "");
-    let output = eval(&[&cases, "--on", "truth", "-o", &truth]);
-    assert!(output.status.success(), "{}", text(&output.stderr));
+    printed(&eval(&[&cases, "--on", "truth", "-o", &truth]));
     let mean_error = |cases: &str, method: &str| {
         let summary = measures(&[cases, "--on", method, "--against", &truth]);
         let families = summary["families"].as_array().unwrap().iter();
@@ -283,11 +275,8 @@ fn failures_say_what_and_where_and_have_their_exit_codes() {
         (vec![&cases, "--against", &empty_truth, "--tolerance", "-1"], 2, "a number from 0 on"),
         (vec![&cases, "--against", &empty_truth, "--tolerance", "NaN"], 2, "a number from 0 on"),
     ] {
-        let output = eval(&arguments);
-        let error = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
-        assert!(error.contains(message), "{arguments:?}: {error}");
-        assert!(!error.contains("panicked"), "{error}");
+        println!("{arguments:?}");
+        refused(&eval(&arguments), code, &[message]);
     }
 }
 
@@ -303,8 +292,7 @@ fn truth_that_lacks_a_case_is_found_before_anything_is_answered() {
     let _ = std::fs::remove_file(&out);
     let arguments = ["--on", "oracle", "--against", &lacking, "-o", out.to_str().unwrap()];
     let output = eval(&[&[reference("cases.json").as_str()], &arguments[..]].concat());
-    assert_eq!(output.status.code(), Some(3));
-    assert!(text(&output.stderr).contains("lacking.json: case '000_rect' has no known radiance"));
+    refused(&output, 3, &["lacking.json: case '000_rect' has no known radiance"]);
     assert!(!out.exists(), "no answer was asked for");
 }
 
@@ -315,26 +303,18 @@ fn a_tolerance_is_a_gate() {
         precisely(&[&cases, "--on", method, "--against", &truth, "--tolerance", tolerance])
     };
     // The cubature agrees with the known radiance of the same integral; a fitted lobe does not
-    let passed = gate("truth", "1e-3");
-    assert_eq!(passed.status.code(), Some(0), "{}", text(&passed.stderr));
+    printed(&gate("truth", "1e-3"));
     let failed = gate("oracle", "1e-3");
-    assert_eq!(failed.status.code(), Some(1), "{}", text(&failed.stderr));
-    let said = text(&failed.stderr);
-    assert!(said.contains("error: case '") && said.contains("is above --tolerance 1e-3"), "{said}");
+    refused(&failed, 1, &["error: case '", "is above --tolerance 1e-3"]);
     assert!(text(&failed.stdout).contains("polygon, ggx"), "the measures are printed all the same");
 }
 
 #[test]
 fn the_gpu_meets_its_measure() {
     let Some(()) = device() else { return };
-    let output = precisely(&[&reference("cases.json"), "--against", &reference("truth.json"), "--json"]);
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let summary = measures(&[&reference("cases.json"), "--against", &reference("truth.json")]);
     let measure = |material: &str, measure: &str| {
-        let mut families = summary["families"].as_array().unwrap().iter();
-        let family = families
-            .find(|f| f["shape"] == "polygon" && f["textured"] == false && f["material"] == material)
-            .unwrap();
+        let family = family(&summary, material);
         assert_eq!(family["unanswered"], 0, "{family}");
         family[measure].as_f64().unwrap()
     };
@@ -362,10 +342,7 @@ fn a_light_that_float32_cannot_hold_costs_only_its_own_answer() {
         case("after", "1", "1"),
     ];
     let cases = write("far.json", &format!(r#"{{"cases": [{}]}}"#, all.join(",")));
-    let output = eval(&[&cases]);
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    let answers: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let answers = answers["results"].as_array().unwrap();
+    let answers = answers(&[&cases]);
     assert_eq!(answers.len(), 4);
     assert!(answers[0]["radiance"].is_array(), "{}", answers[0]);
     assert_eq!(answers[0]["radiance"], answers[3]["radiance"]);
@@ -379,13 +356,7 @@ fn a_light_that_float32_cannot_hold_costs_only_its_own_answer() {
 fn thousands_of_cases_are_answered_each_like_the_one_it_repeats() {
     let Some(()) = device() else { return };
     // Those that are answered, under new names until there are enough
-    let answers = |cases: &str| -> Vec<Value> {
-        let output = eval(&[cases]);
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        let answers: Value = serde_json::from_slice(&output.stdout).unwrap();
-        answers["results"].as_array().unwrap().clone()
-    };
-    let once = answers(&reference("cases.json"));
+    let once = answers(&[&reference("cases.json")]);
     let cases = json(reference("cases.json"));
     let answered = cases["cases"].as_array().unwrap().iter().zip(&once);
     let answered: Vec<_> = answered.filter(|(_, answer)| answer["radiance"].is_array()).collect();
@@ -399,7 +370,7 @@ fn thousands_of_cases_are_answered_each_like_the_one_it_repeats() {
         .collect();
     // Their image is looked for beside them
     std::fs::copy(reference("light.exr"), temporary("light.exr")).unwrap();
-    let many = answers(&write("many.json", &serde_json::json!({ "cases": renamed }).to_string()));
+    let many = answers(&[&write("many.json", &serde_json::json!({ "cases": renamed }).to_string())]);
     assert_eq!(many.len(), 5_000);
     for (index, (answer, (_, first))) in many.iter().zip(answered.iter().cycle()).enumerate() {
         assert_eq!(answer["name"], format!("{index}"));
@@ -411,8 +382,7 @@ fn thousands_of_cases_are_answered_each_like_the_one_it_repeats() {
 fn cases_and_answers_go_through_pipes() {
     use std::io::Write as _;
     let (cases, truth) = (reference("cases.json"), reference("truth.json"));
-    let plain = eval(&[&cases, "--on", "oracle"]);
-    assert!(plain.status.success());
+    let plain = printed(&eval(&[&cases, "--on", "oracle"]));
     let mut piped = Command::new(env!("CARGO_BIN_EXE_arealight"))
         .args(["eval", "-", "--on", "oracle", "--against", &truth, "-o", "-"])
         // Images of lights are beside the file, or where the program runs
@@ -424,10 +394,9 @@ fn cases_and_answers_go_through_pipes() {
         .unwrap();
     piped.stdin.take().unwrap().write_all(&std::fs::read(&cases).unwrap()).unwrap();
     let piped = piped.wait_with_output().unwrap();
-    let said = text(&piped.stderr);
-    assert!(piped.status.success(), "{said}");
     // Answers and nothing else on one stream, how far they are on the other
-    assert!(piped.stdout == plain.stdout, "{} bytes, not {}", piped.stdout.len(), plain.stdout.len());
+    let (found, said) = (printed(&piped), text(&piped.stderr));
+    assert!(found == plain, "{} bytes, not {}", found.len(), plain.len());
     assert!(said.contains("family") && said.contains("worst"), "{said}");
 }
 
@@ -459,11 +428,7 @@ fn an_image_keeps_its_range_whatever_the_other_images_are() {
         }));
     }
     let answers = |cases: &[Value], on: &str| -> Vec<Value> {
-        let file = write("images.json", &serde_json::json!({ "cases": cases }).to_string());
-        let output = eval(&[&file, "--on", on]);
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        let answers: Value = serde_json::from_slice(&output.stdout).unwrap();
-        answers["results"].as_array().unwrap().clone()
+        answers(&[&write("images.json", &serde_json::json!({ "cases": cases }).to_string()), "--on", on])
     };
     let both = answers(&cases, "gpu").into_iter().zip(answers(&cases, "oracle"));
     for (case, (found, exact)) in cases.iter().zip(both) {

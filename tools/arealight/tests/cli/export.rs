@@ -1,6 +1,6 @@
 //! `arealight export` as a user meets it.
 
-use crate::common::run;
+use crate::common::{self, printed, run};
 use arealight::gpu::{GpuLight, GpuShape, ShadeConstants};
 use arealight::kernels::Kernel;
 use serde_json::Value;
@@ -11,17 +11,12 @@ use std::process::Command;
 
 /// Exports to `DIR` in `folder`, and returns what is printed.
 fn export(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, &[&["export", "DIR"], arguments].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
+    printed(&run(folder, &[&["export", "DIR"], arguments].concat()))
 }
 
 /// Exports to `DIR`, which must fail with `words`.
 fn refuse(folder: &Path, words: &str) {
-    let output = run(folder, &["export", "DIR"]);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(5), "{said}");
-    assert!(said.contains(words), "{said}");
+    common::refuse(folder, &["export", "DIR"], 5, &[words]);
 }
 
 fn manifest(folder: &Path) -> Value {
@@ -212,16 +207,8 @@ fn hlsl_is_what_another_compiler_takes() {
     let path = folder.path().join("DIR").join(target["file"].as_str().unwrap());
     let compile = |path: &Path| {
         let compiler = Command::new("glslangValidator")
-            .args([
-                "-D",
-                "-S",
-                "comp",
-                "--target-env",
-                "vulkan1.1",
-                "-V",
-                "-e",
-                target["entry_point"].as_str().unwrap(),
-            ])
+            .args(["-D", "-S", "comp", "--target-env", "vulkan1.1", "-V"])
+            .args(["-e", target["entry_point"].as_str().unwrap()])
             .arg(path)
             .arg("-o")
             .arg(folder.path().join("shade.spv"))
@@ -242,10 +229,7 @@ fn a_target_needs_effects() {
         (vec!["--target", "webgpu", "--effects", "diffuse,shiny"], "there is no such effect"),
         (vec!["--target", "webgpu", "--effects", "diffuse,mesh"], "mesh needs polygon"),
     ] {
-        let output = run(folder.path(), &[vec!["export", "DIR"], arguments].concat());
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains(words), "{said}");
+        common::refuse(folder.path(), &[vec!["export", "DIR"], arguments].concat(), 2, &[words]);
     }
     assert!(!folder.path().join("DIR").exists(), "nothing was written");
 }

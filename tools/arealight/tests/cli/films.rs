@@ -1,20 +1,12 @@
 //! `arealight render --frames`: pictures of times that follow each other.
 
-use crate::common::{device, difference, run};
+use crate::common::{device, difference, json_of, picture, printed, run, scene};
 use std::path::Path;
 
 /// Renders the cinema into a folder. What was said.
 fn render(folder: &Path, options: &[&str]) -> String {
-    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/cinema.glb");
-    let common = ["render", scene.to_str().unwrap(), "--size", "48x27", "--supersample", "1"];
-    let output = run(folder, &[&common, options].concat());
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{said}");
-    String::from_utf8_lossy(&output.stdout).into_owned()
-}
-
-fn picture(folder: &Path, name: &str) -> Vec<u8> {
-    image::open(folder.join(name)).unwrap().to_rgb8().into_raw()
+    let common = ["render", &scene("cinema.glb"), "--size", "48x27", "--supersample", "1"];
+    printed(&run(folder, &[&common, options].concat()))
 }
 
 #[test]
@@ -51,8 +43,7 @@ fn a_films_shadows_have_less_noise_than_a_pictures() {
     let still = ["--time", "1", "--rate", "240"];
     render(path, &[&still[..2], &["--shadow-noise", "0.2", "--seed", "70", "-o", "truth.exr"]].concat());
     let noise = |name: &str| {
-        let output = run(path, &["compare", name, "truth.exr", "--json"]);
-        let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let found = json_of(&run(path, &["compare", name, "truth.exr", "--json"]));
         found["rmse_over_mean"].as_f64().unwrap()
     };
     let film = |history: &[&str], name: &str| {

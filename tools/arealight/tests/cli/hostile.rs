@@ -1,6 +1,6 @@
 //! Files of strangers: each is refused in words that a terminal may have, in little memory, or answered.
 
-use crate::common::run;
+use crate::common::{printed, refuse, run, text};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -80,7 +80,7 @@ fn what_strangers_write_is_refused_in_plain_words_and_little_memory() {
     }
     // The twin: who wants it gives more
     let output = run(folder.path(), &["effects", "zeros.gltf", "--memory", "1100M"]);
-    assert!(String::from_utf8_lossy(&output.stderr).contains("more than is left of 1153433600"));
+    assert!(text(&output.stderr).contains("more than is left of 1153433600"));
 }
 
 /// They took 1.1 GB as a tree of JSON and copies of all.
@@ -113,13 +113,12 @@ fn a_pipe_is_written_once_and_an_input_never() {
         .spawn()
         .unwrap();
     let written = run(folder.path(), &["eval", "in.json", "--on", "truth", "-o", "pipe"]);
-    assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+    printed(&written);
     assert_eq!(reader.wait_with_output().unwrap().stdout, answered.stdout);
     // What is read stays
     for output in ["in.json", "./in.json"] {
-        let refused = run(folder.path(), &["eval", "in.json", "--on", "truth", "-o", output]);
-        assert_eq!(refused.status.code(), Some(2));
-        assert!(String::from_utf8_lossy(&refused.stderr).contains("is an input, which it would replace"));
+        let arguments = ["eval", "in.json", "--on", "truth", "-o", output];
+        refuse(folder.path(), &arguments, 2, &["is an input, which it would replace"]);
     }
     assert_eq!(fs::read_to_string(folder.path().join("in.json")).unwrap(), cases);
 }

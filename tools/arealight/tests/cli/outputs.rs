@@ -1,16 +1,8 @@
 //! Outputs are whole or not there, and what cannot be written is said before long work.
 
-use crate::common::{device, run};
+use crate::common::{device, printed, reference, refuse, refused, run, text};
 use std::path::Path;
 use std::process::{Command, Output};
-
-fn cases() -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../tests/data/reference/anisotropy.json")
-        .to_str()
-        .expect("a path in UTF-8")
-        .to_owned()
-}
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).unwrap();
@@ -34,7 +26,7 @@ fn limited(limit: &str, most: &str, folder: &Path, arguments: &[&str]) -> Output
 #[test]
 fn where_the_disk_is_full_the_old_file_stays() {
     use std::os::unix::fs::PermissionsExt;
-    let cases = cases();
+    let cases = reference("anisotropy.json");
     for (file, arguments) in [
         ("answers.json", vec!["eval", &cases, "--on", "oracle", "-o"]),
         ("table.ktx2", vec!["table", "convert", "built-in"]),
@@ -47,15 +39,13 @@ fn where_the_disk_is_full_the_old_file_stays() {
         std::fs::write(&path, "old").unwrap();
         std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o640)).unwrap();
 
-        let refused = limited("f", "1", folder.path(), &arguments);
-        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-        assert_eq!(refused.status.code(), Some(5), "{file}: {said}");
-        assert!(said.contains(&format!("{file}: cannot write")), "{said}");
+        let limited = |most: &str| limited("f", most, folder.path(), &arguments);
+        refused(&limited("1"), 5, &[&format!("{file}: cannot write")]);
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "old", "{file}");
         assert_eq!(names(folder.path()), [file]);
 
         // The twin: with room it is replaced, and keeps its permissions
-        assert_eq!(limited("f", "unlimited", folder.path(), &arguments).status.code(), Some(0), "{file}");
+        printed(&limited("unlimited"));
         let there = std::fs::metadata(&path).unwrap();
         assert!(there.len() > 512 && there.permissions().mode() & 0o777 == 0o640, "{file}");
         assert_eq!(names(folder.path()), [file]);
@@ -66,7 +56,7 @@ fn where_the_disk_is_full_the_old_file_stays() {
 #[test]
 fn a_path_that_cannot_be_written_is_said_before_the_work() {
     let folder = tempfile::tempdir().unwrap();
-    let cases = cases();
+    let cases = reference("anisotropy.json");
     for arguments in [
         &["bench", "--html", "missing/report.html"][..],
         &["bench", "--save", "missing/report.json"],
@@ -79,10 +69,8 @@ fn a_path_that_cannot_be_written_is_said_before_the_work() {
         &["render", "-o", "missing/picture.png"],
     ] {
         // The work takes minutes
-        let refused = limited("t", "20", folder.path(), arguments);
-        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-        assert_eq!(refused.status.code(), Some(5), "{arguments:?}: {said}");
-        assert!(said.contains("missing/") && said.contains("cannot write"), "{arguments:?}: {said}");
+        println!("{arguments:?}");
+        refused(&limited("t", "20", folder.path(), arguments), 5, &["missing/", "cannot write"]);
     }
     assert_eq!(names(folder.path()), [""; 0]);
 }
@@ -95,10 +83,7 @@ fn a_name_that_is_no_format_is_refused() {
         (&["render", "-o", "picture.bmp"], ".png or .exr"),
         (&["fit", "-o", "table.txt"], ".exr"),
     ] {
-        let refused = run(folder.path(), arguments);
-        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-        assert_eq!(refused.status.code(), Some(2), "{arguments:?}: {said}");
-        assert!(said.contains(words), "{arguments:?}: {said}");
+        refuse(folder.path(), arguments, 2, &[words]);
     }
     assert_eq!(names(folder.path()), [""; 0]);
 }
@@ -134,7 +119,7 @@ fn a_picture_goes_through_a_pipe() {
     let Some(()) = device() else { return };
     let folder = tempfile::tempdir().unwrap();
     let output = run(folder.path(), &["render", "--size", "32x18", "--supersample", "1", "-o", "-"]);
-    let said = String::from_utf8_lossy(&output.stderr);
+    let said = text(&output.stderr);
     assert!(output.status.success(), "{said}");
     let picture = image::load_from_memory_with_format(&output.stdout, image::ImageFormat::Png).unwrap();
     assert_eq!((picture.width(), picture.height()), (32, 18));
@@ -150,8 +135,7 @@ fn the_page_of_results_is_made_of_the_files() {
         std::fs::copy(there.join(name), folder.path().join(name)).unwrap();
     }
     let page = || {
-        let output = run(folder.path(), &["bench", "results", "."]);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        printed(&run(folder.path(), &["bench", "results", "."]));
         std::fs::read_to_string(folder.path().join("README.md")).unwrap()
     };
     let checked_in = std::fs::read_to_string(there.join("README.md")).unwrap();
@@ -162,5 +146,5 @@ fn the_page_of_results_is_made_of_the_files() {
     let empty = tempfile::tempdir().unwrap();
     let output = run(empty.path(), &["bench", "results", "."]);
     assert!(!output.status.success() && names(empty.path()).is_empty());
-    assert!(String::from_utf8_lossy(&output.stderr).contains("arealight bench --save"));
+    assert!(text(&output.stderr).contains("arealight bench --save"));
 }

@@ -1,11 +1,6 @@
 //! `arealight bench pictures`: one of each kind, of a few pixels.
 
-use crate::common::{device, run};
-use std::path::Path;
-
-fn scene(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name).display().to_string()
-}
+use crate::common::{device, refuse, run, scene, text};
 
 #[test]
 fn a_strip_and_a_film_are_made_again() {
@@ -15,7 +10,7 @@ fn a_strip_and_a_film_are_made_again() {
     let make = |file: &str, options: &[&str]| {
         let common = ["bench", "pictures", &sweep, "-o", file, "--size", "32x18", "--samples", "4"];
         let output = run(folder.path(), &[&common, options].concat());
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let said = text(&output.stderr);
         assert!(output.status.success() && said.contains(&format!("wrote {file}")), "{said}");
         std::fs::read(folder.path().join(file)).unwrap()
     };
@@ -49,10 +44,7 @@ fn what_cannot_be_shown_is_refused_before_the_work() {
     let folder = tempfile::tempdir().unwrap();
     let sweep = scene("sweep.glb");
     let refused = |options: &[&str], code: i32, words: &str| {
-        let output = run(folder.path(), &[&["bench", "pictures", &sweep], options].concat());
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(code), "{said}");
-        assert!(said.contains(words), "{said}");
+        refuse(folder.path(), &[&["bench", "pictures", &sweep], options].concat(), code, &[words]);
     };
     refused(&["-o", "strip.jpg"], 2, "must end in .png or .gif");
     refused(&["-o", "a.png", "--crop", "300,0,32,8"], 2, "300,0,32,8 reaches out of a picture of 320x180");

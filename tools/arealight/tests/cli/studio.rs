@@ -1,6 +1,6 @@
 //! `--lights studio`: models that bring no light.
 
-use crate::common::{device, run};
+use crate::common::{device, json_of, refuse, run, scene, text};
 use std::path::{Path, PathBuf};
 
 /// A pyramid on a floor, of one gray material, scaled by `scale`.
@@ -38,9 +38,7 @@ fn model(folder: &Path, name: &str, scale: &str) -> PathBuf {
 /// What a successful run says: its JSON, and standard error.
 fn said(folder: &Path, arguments: &[&str]) -> (serde_json::Value, String) {
     let output = run(folder, arguments);
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{arguments:?}: {errors}");
-    (serde_json::from_slice(&output.stdout).expect("--json prints JSON"), errors)
+    (json_of(&output), text(&output.stderr))
 }
 
 #[test]
@@ -79,7 +77,7 @@ fn a_model_without_lights_is_shown_by_the_studio() {
 #[test]
 fn softboxes_are_added_to_what_the_file_has() {
     let folder = tempfile::tempdir().unwrap();
-    let screen = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/screen.glb").display().to_string();
+    let screen = scene("screen.glb");
     let effects = |more: &[&str]| said(folder.path(), &[&["effects", &screen, "--json"], more].concat()).0;
     assert_eq!(effects(&["--lights", "studio"]), effects(&[]), "one-sided rectangles need nothing more");
     let Some(()) = device() else { return };
@@ -93,12 +91,7 @@ fn softboxes_are_added_to_what_the_file_has() {
 #[test]
 fn what_cannot_be_lit_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let refused = |arguments: &[&str], words: &[&str]| {
-        let output = run(folder.path(), arguments);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(words.iter().all(|word| said.contains(word)), "{said}");
-    };
     model(folder.path(), "model.gltf", "1");
-    refused(&["render", "model.gltf", "--lights", "sun"], &["--lights", "'sun'", "file", "studio"]);
+    let words = ["--lights", "'sun'", "file", "studio"];
+    refuse(folder.path(), &["render", "model.gltf", "--lights", "sun"], 2, &words);
 }

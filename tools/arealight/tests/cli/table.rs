@@ -1,22 +1,17 @@
 //! `arealight table` as a user meets it.
 
-use crate::common::run;
+use crate::common::{self, printed, run};
 use arealight_table::{Format, Precision, TableFile, resampled, rounded};
 use std::path::Path;
 
 /// Runs `table convert` with what must succeed, and returns what it prints.
 fn convert(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, &[&["table", "convert"], arguments].concat());
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
+    printed(&run(folder, &[&["table", "convert"], arguments].concat()))
 }
 
 /// Runs `table convert` with what must fail with `code` and say `words`.
 fn refuse(folder: &Path, arguments: &[&str], code: i32, words: &str) {
-    let output = run(folder, &[&["table", "convert"], arguments].concat());
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
-    assert!(said.contains(words) && !said.contains("panicked"), "{arguments:?}: {said}");
+    common::refuse(folder, &[&["table", "convert"], arguments].concat(), code, &[words]);
 }
 
 #[test]

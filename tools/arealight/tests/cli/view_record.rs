@@ -1,8 +1,7 @@
 //! The viewer without a window: what a script does is what the frames show.
 
-use crate::common::{device, difference, run};
+use crate::common::{device, difference, json_of, picture, refuse, run, scene};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
 
 /// Every mode, a quarter of a second each; a lamp of the room is dragged, and then the view.
 const SCRIPT: &str = "
@@ -35,8 +34,7 @@ struct Recording {
 
 impl Recording {
     fn pixels(&self, frame: usize) -> Vec<u8> {
-        let path: PathBuf = self.folder.path().join(format!("out/frame-{frame:04}.png"));
-        image::open(path).unwrap().to_rgb8().into_raw()
+        picture(self.folder.path(), &format!("out/frame-{frame:04}.png")).into_raw()
     }
 
     /// The part of the bytes that differ between two frames.
@@ -45,30 +43,12 @@ impl Recording {
     }
 }
 
-fn record(scene: &str, script: &str) -> Recording {
+fn record(name: &str, script: &str) -> Recording {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("script"), script).unwrap();
-    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(scene);
-    let output = run(
-        folder.path(),
-        &[
-            "view",
-            scene.to_str().unwrap(),
-            "--size",
-            "160x96",
-            "--script",
-            "script",
-            "--record",
-            "out",
-            "--rate",
-            "4",
-            "--samples",
-            "4",
-            "--json",
-        ],
-    );
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let said: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let options = "--size 160x96 --script script --record out --rate 4 --samples 4 --json";
+    let arguments: Vec<&str> = options.split(' ').collect();
+    let said = json_of(&run(folder.path(), &[&["view", &scene(name)], &arguments[..]].concat()));
     Recording { folder, frames: said["frames"].as_array().unwrap().clone() }
 }
 
@@ -166,10 +146,7 @@ fn images_move_until_they_are_stopped() {
 fn wrong_scripts_and_places_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |arguments: &[&str], code: i32, words: &str| {
-        let output = run(folder.path(), arguments);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
-        assert!(said.contains(words) && !said.contains("panicked"), "{arguments:?}: {said}");
+        refuse(folder.path(), arguments, code, &[words]);
     };
     std::fs::write(folder.path().join("bad"), "0 key w\n0 key f13").unwrap();
     std::fs::write(folder.path().join("file"), "").unwrap();

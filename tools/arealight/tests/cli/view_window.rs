@@ -3,9 +3,8 @@
 #[path = "../../../../examples/rust/tests/screen/mod.rs"]
 mod screen;
 
-use crate::common::device;
+use crate::common::{device, refused, scene};
 use screen::{Screen, under_validation};
-use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
@@ -46,11 +45,10 @@ fn a_window_is_silent_and_shows_each_mode() {
     let Some(screen) = Screen::start(SIZE) else { return };
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("script"), SCRIPT).unwrap();
-    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/sweep.glb");
     let program = env!("CARGO_BIN_EXE_arealight");
     let mut command =
         under_validation(program, folder.path(), "error,warn", "SYNCHRONIZATION_VALIDATION", "validate_sync");
-    command.arg("view").arg(scene).args(["--size", "320x200", "--script", "script"]);
+    command.arg("view").arg(scene("sweep.glb")).args(["--size", "320x200", "--script", "script"]);
     let mut running = command.env("DISPLAY", &screen.display).stderr(Stdio::piped()).spawn().unwrap();
     let (began, mut seen): (Instant, Vec<Vec<u8>>) = (Instant::now(), vec![]);
     while running.try_wait().unwrap().is_none() {
@@ -85,7 +83,5 @@ fn without_a_display_it_says_what_needs_none() {
     let mut command =
         under_validation(program, folder.path(), "error,warn", "SYNCHRONIZATION_VALIDATION", "validate_sync");
     let output = command.arg("view").stderr(Stdio::piped()).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("no window can be opened") && said.contains("--record"), "{said}");
+    refused(&output, 2, &["no window can be opened", "--record"]);
 }

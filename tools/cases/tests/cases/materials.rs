@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 /// A case of the reference, with the radiance that is known of it.
-struct Known {
+pub struct Known {
     surface: Surface,
     normal: DVec3,
     view: DVec3,
@@ -22,17 +22,21 @@ struct Known {
     radiance: DVec3,
 }
 
-/// The reference's cases of a material.
-fn known(count: usize, is_it: fn(&CaseMaterial) -> bool) -> Vec<Known> {
-    let answers = read_answers(&read("materials-truth.json")).unwrap();
+/// Those of the reference's cases in two files, `name.json` and `name-truth.json`.
+pub fn known_of(name: &str, is_it: impl Fn(&Case) -> bool) -> Vec<Known> {
+    let answers = read_answers(&read(&format!("{name}-truth.json"))).unwrap();
     let one = |case: Case| {
         let radiance = answers.iter().find(|answer| answer.name == case.name).unwrap().radiance.unwrap();
         let case = case.supported(|path| panic!("{path}")).unwrap();
         let (normal, view, radiance) = (case.normal, case.view, radiance.into());
         Known { surface: case.surface, normal, view, light: case.light, radiance }
     };
-    let cases = read_cases(&read("materials.json")).unwrap();
-    let known: Vec<Known> = cases.into_iter().filter(|case| is_it(&case.material)).map(one).collect();
+    read_cases(&read(&format!("{name}.json"))).unwrap().into_iter().filter(is_it).map(one).collect()
+}
+
+/// The reference's cases of a material.
+fn known(count: usize, is_it: fn(&CaseMaterial) -> bool) -> Vec<Known> {
+    let known = known_of("materials", |case| is_it(&case.material));
     assert_eq!(known.len(), count);
     known
 }
@@ -56,7 +60,7 @@ fn rough_diffuse() -> Vec<Known> {
 }
 
 /// How many cases have another truth with a changed surface.
-fn noticed(cases: &[Known], change: impl Fn(&Surface) -> Surface) -> usize {
+pub fn noticed(cases: &[Known], change: impl Fn(&Surface) -> Surface) -> usize {
     // Both programs integrate adaptively; the reference's own estimates reach 7e-7
     noticed_by(1e-5, cases, change)
 }
@@ -77,7 +81,7 @@ fn fitted(cases: &[Known], change: impl Fn(&Surface) -> Surface) -> (f64, f64) {
     fitted_on(Quality::default(), cases, change)
 }
 
-fn fitted_on(quality: Quality, cases: &[Known], change: impl Fn(&Surface) -> Surface) -> (f64, f64) {
+pub fn fitted_on(quality: Quality, cases: &[Known], change: impl Fn(&Surface) -> Surface) -> (f64, f64) {
     let count = 3.0 * cases.len() as f64;
     let (mut unit, mut square, mut mean) = (0.0, 0.0, 0.0);
     for case in cases {
@@ -90,7 +94,7 @@ fn fitted_on(quality: Quality, cases: &[Known], change: impl Fn(&Surface) -> Sur
     (unit, square.sqrt() / mean)
 }
 
-fn same(surface: &Surface) -> Surface {
+pub fn same(surface: &Surface) -> Surface {
     *surface
 }
 

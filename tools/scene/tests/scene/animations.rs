@@ -2,7 +2,7 @@
 
 use crate::shapes::panel;
 use crate::writer::Writer;
-use crate::{emitter_with, load, warnings};
+use crate::{emitter_with, load, notes, warnings};
 use arealight_scene::{LoadOptions, Scene, SceneError};
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
@@ -129,8 +129,7 @@ fn the_first_animation_that_moves_something_moves_it() {
     let scene = at(&writer, 2.0).unwrap();
     assert_eq!(scene.lights[0].shape.center(), DVec3::X);
     assert!((scene.lights[0].shape.area_vector().z - 18.0).abs() < 1e-5, "the third one scales it");
-    let notes: Vec<String> = scene.notes.iter().map(ToString::to_string).collect();
-    assert_eq!(notes, ["animations: 1 channels move what an earlier animation moves: left out"]);
+    assert_eq!(notes(&scene), ["animations: 1 channels move what an earlier animation moves: left out"]);
 }
 
 #[test]

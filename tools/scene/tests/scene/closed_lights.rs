@@ -2,7 +2,7 @@
 
 use crate::shapes::{capsule, cuboid, cylinder, panel, sphere};
 use crate::writer::{Shape, Writer};
-use crate::{emitter_with, load, warnings};
+use crate::{emitter_with, load, notes, warnings};
 use arealight::Light;
 use arealight_oracle::polygon::form_factor;
 use arealight_scene::{Scene, SceneBuffers};
@@ -71,8 +71,7 @@ fn closed_meshes_are_the_same_lights_whatever_the_material_says() {
         let (one, two) = (lamp(&shape, false), lamp(&shape, true));
         assert_eq!(one.lights, two.lights, "{name}");
         assert!(two.lights.iter().all(|light| !light.two_sided), "{name}");
-        let notes: Vec<String> = two.notes.iter().map(ToString::to_string).collect();
-        assert_eq!((&notes[..], one.notes.len()), (&[NOTE.to_owned()][..], 0), "{name}");
+        assert_eq!((notes(&two), one.notes.len()), (vec![NOTE.to_owned()], 0), "{name}");
         assert_eq!(warnings(&two), [""; 0], "{name}: nothing is lost");
         assert!(two.materials[0].double_sided, "{name} looks as the file says");
     }

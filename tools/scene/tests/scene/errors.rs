@@ -2,7 +2,7 @@
 
 use crate::allocations::most_of;
 use crate::shapes::panel;
-use crate::writer::{Writer, container};
+use crate::writer::{Writer, container, png};
 use crate::{emitter_with, error};
 use arealight_scene::{LoadOptions, Scene, SceneBuffers, SceneError};
 use glam::DVec3;
@@ -367,8 +367,7 @@ fn promised(png: &[u8]) -> Vec<u8> {
 
 #[test]
 fn images_that_are_too_many_texels_together_are_refused_by_their_headers() {
-    let mut png = std::io::Cursor::new(Vec::new());
-    image::RgbImage::new(4, 4).write_to(&mut png, image::ImageFormat::Png).unwrap();
+    let small = png(image::RgbImage::new(4, 4));
     let with = |images: &[&[u8]], memory: Option<u64>| {
         let mut writer = lamp();
         for image in images {
@@ -380,8 +379,8 @@ fn images_that_are_too_many_texels_together_are_refused_by_their_headers() {
         let options = LoadOptions { memory, ..LoadOptions::default() };
         Scene::from_bytes_with(&writer.glb(), "test.glb", options).unwrap_err().to_string()
     };
-    let promised = promised(png.get_ref());
-    let together = with(&[png.get_ref(), &promised], Some(1 << 32));
+    let promised = promised(&small);
+    let together = with(&[&small, &promised], Some(1 << 32));
     assert!(together.contains("texels of all images: 268435472, at most 268435456"), "{together}");
     // The twin: alone it is not too large, and its texels are missing
     let alone = with(&[&promised], Some(1 << 32));

@@ -1,7 +1,7 @@
 //! Extensions that a file uses or requires: read, left out with a warning, or refused by name.
 
 use crate::shapes::panel;
-use crate::writer::Writer;
+use crate::writer::{Writer, png};
 use crate::{emitter_with, error, load, panel_with, warnings};
 use arealight_scene::{Scene, Warning};
 use glam::DVec3;
@@ -157,11 +157,7 @@ fn corners_of(info: &Value) -> [[f32; 2]; 2] {
     let mut writer = panel_with(json!({ "pbrMetallicRoughness": { "baseColorTexture": info } }));
     let second = writer.floats(&[[0.5_f32, 0.25]; 4]);
     writer.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(second);
-    let mut png = Vec::new();
-    image::RgbImage::new(2, 2)
-        .write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png)
-        .unwrap();
-    writer.texture("picture", &png);
+    writer.texture("picture", &png(image::RgbImage::new(2, 2)));
     let scene = load(writer);
     assert_eq!(warnings(&scene), [""; 0]);
     let at = |x: f32, y: f32| {

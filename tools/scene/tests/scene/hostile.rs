@@ -2,7 +2,7 @@
 
 use crate::allocations::most_of;
 use crate::shapes::{panel, sphere, star};
-use crate::writer::{Writer, container};
+use crate::writer::{Writer, container, png};
 use arealight_scene::{Scene, SceneBuffers, memory_of, required_effects};
 use glam::DVec3;
 use proptest::prelude::*;
@@ -14,9 +14,7 @@ fn rich() -> Writer {
     let glow = writer.emitter("glow", [3.0, 2.0, 1.0], true);
     writer.object("star", &star(10, 1.0, 0.4), glow, json!({ "scale": [-1, 2, 1] }));
     let image = image::RgbImage::from_fn(4, 4, |x, y| image::Rgb([(x * 60) as u8, (y * 60) as u8, 90]));
-    let mut png = std::io::Cursor::new(Vec::new());
-    image.write_to(&mut png, image::ImageFormat::Png).unwrap();
-    let texture = json!({ "index": writer.texture("texture", png.get_ref()), "texCoord": 0 });
+    let texture = json!({ "index": writer.texture("texture", &png(image)), "texCoord": 0 });
     writer.push("samplers", json!({ "wrapS": 33071, "wrapT": 33648 }));
     writer.root["textures"][0]["sampler"] = json!(0);
     let material = json!({ "alphaMode": "MASK", "alphaCutoff": 0.3,

@@ -2,7 +2,7 @@
 
 use crate::shapes::{floor, panel, polygon, rounded_box, sphere, star};
 use crate::writer::Shape;
-use crate::{emitter_with, load, panel_with, warnings};
+use crate::{emitter_with, load, notes, panel_with, warnings};
 use arealight::{Effects, Light, LightShape};
 use arealight_scene::{LUMENS_PER_WATT, Scene, required_effects};
 use glam::{DVec3, Vec3};
@@ -164,7 +164,6 @@ fn what_a_light_has_of_a_draft_is_said() {
 
 #[test]
 fn nits_of_a_light_and_of_a_mesh_are_said_to_differ() {
-    let notes = |scene: &Scene| scene.notes.iter().map(ToString::to_string).collect::<Vec<_>>();
     let lamp = || emitter_with(&panel(1.0, 1.0), json!({}));
     assert_eq!(notes(&load(lamp())), [""; 0]);
     let mut writer = lamp();
@@ -254,6 +253,5 @@ fn area_lights_that_cannot_be_are_left_out() {
 fn an_emissive_factor_above_one_is_a_strength() {
     let scene = load(panel_with(json!({ "emissiveFactor": [6, 3, 0] })));
     assert_eq!(scene.lights[0].radiance.to_array(), [6.0, 3.0, 0.0]);
-    let notes: Vec<String> = scene.notes.iter().map(ToString::to_string).collect();
-    assert_eq!(notes, ["material '#0': emissiveFactor [6.0, 3.0, 0.0] is above 1: a strength, too"]);
+    assert_eq!(notes(&scene), ["material '#0': emissiveFactor [6.0, 3.0, 0.0] is above 1: a strength, too"]);
 }

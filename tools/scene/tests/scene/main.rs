@@ -44,6 +44,10 @@ fn warnings(scene: &Scene) -> Vec<String> {
     own.map(ToString::to_string).collect()
 }
 
+fn notes(scene: &Scene) -> Vec<String> {
+    scene.notes.iter().map(ToString::to_string).collect()
+}
+
 /// A writer with one panel of 2 by 1 on a node "node", of a material made from `material`.
 fn panel_with(material: Value) -> Writer {
     let mut writer = Writer::new();

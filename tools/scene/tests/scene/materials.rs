@@ -1,7 +1,7 @@
 //! Materials, textures, and the effects that they need.
 
 use crate::shapes::panel;
-use crate::writer::Writer;
+use crate::writer::{Writer, png};
 use crate::{error, load, panel_with, warnings};
 use arealight::Effects;
 use arealight_oracle::material::Material;
@@ -161,9 +161,7 @@ fn what_is_wrong_with_extensions_is_named() {
 fn textured(material: Value) -> Writer {
     let mut writer = panel_with(material);
     let image = image::RgbaImage::from_raw(2, 1, vec![128, 0, 0, 128, 255, 255, 255, 255]).unwrap();
-    let mut png = std::io::Cursor::new(Vec::new());
-    image.write_to(&mut png, image::ImageFormat::Png).unwrap();
-    writer.texture("texture", png.get_ref());
+    writer.texture("texture", &png(image));
     writer
 }
 

@@ -1,7 +1,7 @@
 //! Images that move.
 
 use crate::shapes::panel;
-use crate::writer::Writer;
+use crate::writer::{Writer, png};
 use crate::{error, load};
 use arealight_scene::{LoadOptions, Scene};
 use serde_json::json;
@@ -27,10 +27,7 @@ fn bytes(hexadecimal: &str) -> Vec<u8> {
 
 /// A PNG of two texels that does not move.
 fn still(texels: [u8; 6]) -> Vec<u8> {
-    let mut png = std::io::Cursor::new(Vec::new());
-    let image = image::RgbImage::from_raw(2, 1, texels.to_vec()).unwrap();
-    image.write_to(&mut png, image::ImageFormat::Png).unwrap();
-    png.into_inner()
+    png(image::RgbImage::from_raw(2, 1, texels.to_vec()).unwrap())
 }
 
 /// A panel that shows an image, upright.

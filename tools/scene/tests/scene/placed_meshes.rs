@@ -1,7 +1,7 @@
 //! Meshes that are not where their node is: on the joints of a skin, or many times.
 
 use crate::shapes::panel;
-use crate::writer::Writer;
+use crate::writer::{Writer, png};
 use crate::{emitter_with, error, load, warnings};
 use arealight_scene::Scene;
 use glam::{DVec3, Vec3};
@@ -171,9 +171,7 @@ fn instances_that_do_not_fit_are_refused() {
 
 #[test]
 fn a_light_without_its_own_coordinates_is_said() {
-    let mut png = Vec::new();
-    let picture = image::RgbImage::from_pixel(2, 2, image::Rgb([255, 0, 0]));
-    picture.write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png).unwrap();
+    let png = png(image::RgbImage::from_pixel(2, 2, image::Rgb([255, 0, 0])));
     let lamp = |set: u32| {
         let mut writer = emitter_with(&panel(2.0, 1.0), json!({}));
         let texture = writer.texture("picture", &png);

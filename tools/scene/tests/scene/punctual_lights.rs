@@ -2,7 +2,7 @@
 //! warning.
 
 use crate::writer::Writer;
-use crate::{panel_with, warnings};
+use crate::{notes, panel_with, warnings};
 use arealight::{Effects, LightShape};
 use arealight_scene::{LUMENS_PER_WATT, LoadOptions, Scene, SceneError};
 use glam::{DVec3, Vec3};
@@ -29,10 +29,6 @@ fn read(writer: Writer, light_size: Option<f64>) -> Result<Scene, SceneError> {
 
 fn with_size(light: &Value, node: Value) -> Scene {
     read(file(light, node), Some(RADIUS)).unwrap()
-}
-
-fn notes(scene: &Scene) -> Vec<String> {
-    scene.notes.iter().map(ToString::to_string).collect()
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Emissive textures: which rectangle of which image each light shows.
 
 use crate::shapes::{panel, polygon};
-use crate::writer::{Shape, Writer};
+use crate::writer::{Shape, Writer, png};
 use crate::{load, warnings};
 use arealight::{Effects, Light, TexturePart};
 use arealight_scene::{MAX_LIGHT_TEXELS, MAX_LIGHT_TEXTURES, Scene, Wrap, required_effects};
@@ -28,9 +28,7 @@ fn screen(uv: impl Fn(DVec2) -> DVec2) -> Shape {
 fn textured(image: &RgbImage) -> (Writer, usize) {
     let mut writer = Writer::new();
     let material = writer.emitter("glow", [3.0, 2.0, 1.0], false);
-    let mut png = std::io::Cursor::new(Vec::new());
-    image.write_to(&mut png, image::ImageFormat::Png).unwrap();
-    let texture = writer.texture("picture", png.get_ref());
+    let texture = writer.texture("picture", &png(image.clone()));
     writer.root["materials"][material]["emissiveTexture"] = json!({ "index": texture });
     (writer, material)
 }

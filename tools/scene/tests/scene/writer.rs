@@ -178,9 +178,7 @@ impl Writer {
 
     /// A texture of an image, which ends at its edges.
     pub fn picture(&mut self, name: &str, image: &image::RgbImage) -> usize {
-        let mut png = std::io::Cursor::new(Vec::new());
-        image.write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
-        let texture = self.texture(name, png.get_ref());
+        let texture = self.texture(name, &png(image.clone()));
         let sampler = self.push("samplers", json!({ "wrapS": 33071, "wrapT": 33071 }));
         self.root["textures"][texture]["sampler"] = json!(sampler);
         texture
@@ -198,6 +196,13 @@ impl Writer {
         }
         container(&text, &self.buffer)
     }
+}
+
+/// An image as a PNG.
+pub fn png(image: impl Into<image::DynamicImage>) -> Vec<u8> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    image.into().write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
+    png.into_inner()
 }
 
 /// A binary glTF container around JSON and a buffer whose lengths are multiples of four.

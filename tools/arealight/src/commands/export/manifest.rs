@@ -40,16 +40,13 @@ const CONVENTIONS: [&str; 7] = [
     "SI radiometry, linear Rec. 709 colour; radiance in W/(m^2 sr).",
     "Right-handed; matrices are column-major and act on column vectors; angles in radians.",
     "roughness is perceptual, alpha = roughness^2; GGX with height-correlated Smith masking-shadowing and \
-    Schlick's \
-     Fresnel term.",
+    Schlick's Fresnel term.",
     "A light's front is the right-hand side of its vertex order: seen from the front, the vertices run \
      counter-clockwise.",
     "Positions are relative to an origin near the camera that the host chooses; a light's vertices are \
-    relative to the \
-     light's center.",
+    relative to the light's center.",
     "The table's axes are roughness (x) and sqrt(1 - cos theta_view) (y), nodes at both ends; texels are \
-    read \
-     unfiltered.",
+    read unfiltered.",
     "A light's image has four array layers of the light textures: its mips, and what lobes \
      see of it, which the kernels texture_load, texture_mip and texture_kernel make. They are read \
      trilinearly, clamped to the edge, at an explicit level.",
