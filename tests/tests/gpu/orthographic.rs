@@ -233,3 +233,18 @@ fn lines_of_sight_of_a_pixel_are_in_rows_and_columns_of_their_own() {
         }
     }
 }
+
+#[test]
+fn an_unlit_surface_shows_its_base_color_by_any_light() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mean = |unlit: bool| {
+        let mut scene = scene(lambert(0.25));
+        scene.materials[0].unlit = unlit;
+        let mut view = View::new(&engine, &scene, &camera());
+        let found = view.shaded(|renderer| renderer.shade(Effects::LOBES, Quality::default()));
+        assert!(!unlit || found.iter().all(|radiance| [0.0, 0.25].contains(radiance)));
+        found.iter().sum::<f64>() / found.len() as f64
+    };
+    // The twin is lit
+    assert!((mean(true) - 0.25).abs() < 0.05 && (mean(false) - 0.25).abs() > 0.05);
+}

@@ -102,6 +102,7 @@ const uint TRIANGLE_GROUPS_SHIFT = 8u; // the groups that it is in
 const uint MATERIAL_DOUBLE_SIDED = 1u;
 const uint MATERIAL_ALPHA_MASK = 2u;
 const uint MATERIAL_ALPHA_BLEND = 4u;
+const uint MATERIAL_UNLIT = 8u;
 const uint TEXTURE_SRGB = 1u;
 const uint TEXTURE_CLAMP_U = 2u;
 const uint TEXTURE_CLAMP_V = 4u;
@@ -417,6 +418,10 @@ ScenePoint scene_point(BvhHit hit, vec3 steps[2]) {
     point.pane = arealight_luminance(pane) / max(arealight_luminance(point.transmitted), 1e-30);
     point.base_color *= (1.0 - glass) * (1.0 - transmission);
     point.emission = material.emission * texel[EMISSION_TEXEL].rgb;
+    if ((material.flags & MATERIAL_UNLIT) != 0u) {
+        point.emission = point.base_color;
+        point.base_color = vec3(0.0);
+    }
     return point;
 }
 

@@ -349,6 +349,8 @@ impl GpuMaterial {
     pub const ALPHA_MASK: u32 = 2;
     /// There by the part that is the base colour's alpha.
     pub const ALPHA_BLEND: u32 = 4;
+    /// Shows its base colour.
+    pub const UNLIT: u32 = 8;
 
     /// Whether all of a surface is there, whatever its alpha.
     pub fn is_whole(&self) -> bool {

@@ -44,7 +44,10 @@ pub fn required_effects(scene: &Scene) -> Vec<RequiredEffect> {
     let reason = |effect| {
         // Only materials that something has been made of are in a scene
         if let Some((_, needs)) = OF_MATERIALS.into_iter().find(|(of_materials, _)| *of_materials == effect) {
-            return names("material", scene.materials.iter().filter(|m| needs(m)).map(|m| &*m.name));
+            return names(
+                "material",
+                scene.materials.iter().filter(|m| !m.unlit && needs(m)).map(|m| &*m.name),
+            );
         }
         names("light", scene.lights.iter().filter(|l| l.effects().contains(effect)).map(|l| &*l.name))
     };

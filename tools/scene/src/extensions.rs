@@ -20,11 +20,12 @@ pub(crate) const DIFFUSE_TRANSMISSION: &str = "KHR_materials_diffuse_transmissio
 pub(crate) const IRIDESCENCE: &str = "KHR_materials_iridescence";
 pub(crate) const SHEEN: &str = "KHR_materials_sheen";
 pub(crate) const TRANSMISSION: &str = "KHR_materials_transmission";
+pub(crate) const UNLIT: &str = "KHR_materials_unlit";
 
 /// Extensions of materials that are read here; the gltf crate reads others. Those that are not read are said
 /// where a material has them.
-pub(crate) const OF_MATERIALS: [&str; 6] =
-    [ANISOTROPY, CLEARCOAT, DIFFUSE_TRANSMISSION, IRIDESCENCE, SHEEN, TRANSMISSION];
+pub(crate) const OF_MATERIALS: [&str; 7] =
+    [ANISOTROPY, CLEARCOAT, DIFFUSE_TRANSMISSION, IRIDESCENCE, SHEEN, TRANSMISSION, UNLIT];
 
 /// What else is read.
 const READ: [&str; 13] = [

@@ -190,7 +190,8 @@ impl From<&SceneMaterial> for GpuMaterial {
             normal_scale: material.normal_scale,
             flags: flag(material.double_sided, GpuMaterial::DOUBLE_SIDED)
                 | flag(material.alpha_cutoff.is_some(), GpuMaterial::ALPHA_MASK)
-                | flag(material.blended, GpuMaterial::ALPHA_BLEND),
+                | flag(material.blended, GpuMaterial::ALPHA_BLEND)
+                | flag(material.unlit, GpuMaterial::UNLIT),
             alpha_cutoff: material.alpha_cutoff.unwrap_or(0.0),
             base_alpha: material.base_alpha,
             emission_texture: texture(material.emission_texture),

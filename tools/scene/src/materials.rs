@@ -3,7 +3,7 @@
 use crate::document::Document;
 use crate::error::SceneError;
 use crate::extensions::{
-    ANISOTROPY, CLEARCOAT, DIFFUSE_TRANSMISSION, IRIDESCENCE, OF_MATERIALS, SHEEN, TRANSMISSION,
+    ANISOTROPY, CLEARCOAT, DIFFUSE_TRANSMISSION, IRIDESCENCE, OF_MATERIALS, SHEEN, TRANSMISSION, UNLIT,
 };
 use crate::images::{TextureReader, Textures};
 use crate::messages::Messages;
@@ -143,7 +143,7 @@ fn read_material(
         }
         _ => None,
     };
-    Ok(SceneMaterial {
+    let read = SceneMaterial {
         name,
         material,
         base_alpha,
@@ -175,7 +175,26 @@ fn read_material(
         alpha_cutoff,
         blended: matches!(source.alpha_mode, Checked::Valid(AlphaMode::Blend)),
         double_sided: source.double_sided,
-    })
+        unlit: source.extensions.as_ref().is_some_and(|e| e.others.contains_key(UNLIT)),
+    };
+    Ok(if read.unlit { without_light(read) } else { read })
+}
+
+/// What is left of a material whose base colour is shown, whatever lights it.
+fn without_light(read: SceneMaterial) -> SceneMaterial {
+    let base_color = read.material.base_color;
+    let black = Material { dielectric_f0: Vec3::ZERO, dielectric_f90: 0.0, ..Material::default() };
+    SceneMaterial {
+        name: read.name,
+        material: Material { base_color, ..black },
+        base_alpha: read.base_alpha,
+        base_color_texture: read.base_color_texture,
+        alpha_cutoff: read.alpha_cutoff,
+        blended: read.blended,
+        double_sided: read.double_sided,
+        unlit: true,
+        ..SceneMaterial::default()
+    }
 }
 
 struct Reader<'a, 'd> {

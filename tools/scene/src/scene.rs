@@ -170,6 +170,8 @@ pub struct SceneMaterial {
     pub blended: bool,
     /// Seen from both sides. Other surfaces are seen from their front only.
     pub double_sided: bool,
+    /// Shows its base colour as radiance, whatever lights it, and lights nothing.
+    pub unlit: bool,
 }
 
 /// How an image is read.

@@ -16,12 +16,12 @@ fn requiring(names: &[&str]) -> Writer {
 
 #[test]
 fn what_costs_looks_alone_is_a_warning_also_where_it_is_required() {
-    let mut writer = requiring(&["KHR_audio_emitter", "KHR_materials_variants", "KHR_materials_unlit"]);
-    writer.root["materials"][0]["extensions"] = json!({ "KHR_materials_unlit": {} });
+    let mut writer = requiring(&["KHR_audio_emitter", "KHR_materials_variants", "KHR_materials_dispersion"]);
+    writer.root["materials"][0]["extensions"] = json!({ "KHR_materials_dispersion": {} });
     let expected = [
         "KHR_audio_emitter: is not supported: ignored",
         "KHR_materials_variants: the default materials are shown",
-        "material '#0': KHR_materials_unlit is not supported: ignored",
+        "material '#0': KHR_materials_dispersion is not supported: ignored",
     ];
     assert_eq!(warnings(&load(writer)), expected);
     // The twin: what the shape of things depends on is refused
