@@ -173,6 +173,6 @@ impl ShadowPatch {
 
 /// An image for what shadow passes find at each pixel.
 pub fn shadow_image(engine: &TestEngine) -> Image {
-    let texels = [[0_u16; 4]; (SIDE * SIDE) as usize];
+    let texels = vec![[0_u16; 4]; (SIDE * SIDE) as usize];
     image(engine, [SIDE; 2], ShadowPass::SHADOW_FORMAT, vk::ImageUsageFlags::STORAGE, &texels)
 }
