@@ -1,14 +1,15 @@
 //! The error of each material of a scene: its picture against the Monte Carlo reference, by material.
 
+use crate::shadow_levels::PicturesError;
 use crate::shadow_levels::pictures::Pictures;
 use crate::table::Table;
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, LightTable, Plane, Quality, SpecularLobes};
 use arealight_engine::host::{Host, Usage};
-use arealight_engine::{Engine, EngineError, Reference, SceneRenderer};
-use arealight_scene::{Scene, SceneBuffers, SceneMaterial};
+use arealight_engine::{Engine, EngineError, Reference};
+use arealight_scene::{Scene, SceneMaterial};
 use arealight_vk::TableFormat;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
@@ -63,21 +64,6 @@ pub struct MaterialErrors {
     pub materials: Vec<MaterialResult>,
 }
 
-/// Why there is no result.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum MaterialsError {
-    /// The device, or a scene that does not fit it.
-    #[error(transparent)]
-    Engine(#[from] EngineError),
-    /// A scene without a camera and without anything to frame.
-    #[error("{scene}: nothing to see")]
-    NoCamera {
-        /// Its name.
-        scene: String,
-    },
-}
-
 /// Two independent pictures of the truth, and ours.
 struct Pixels {
     /// By one specular lobe, by two, and over half vectors.
@@ -96,7 +82,7 @@ pub fn run(
     scene: &Scene,
     options: &Options,
     progress: &dyn Fn(u64),
-) -> Result<MaterialErrors, MaterialsError> {
+) -> Result<MaterialErrors, PicturesError> {
     let mut engine = Engine::new(host.clone(), table, TableFormat::default())?;
     engine.load_scene_textures(scene, 1024)?;
     let pixels = render(&engine, scene, options, progress)?;
@@ -121,15 +107,8 @@ fn render(
     scene: &Scene,
     options: &Options,
     progress: &dyn Fn(u64),
-) -> Result<Pixels, MaterialsError> {
-    let [width, height] = options.size.map(f64::from);
-    let camera = scene
-        .camera(None, width / height)
-        .ok_or_else(|| MaterialsError::NoCamera { scene: scene.name.clone() })?;
-    let buffers = SceneBuffers::new(scene, camera.position).map_err(EngineError::from)?;
-    let constants = buffers.constants(&camera, options.size, Vec3::ZERO);
-    let renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, options.size)?;
-    let mut pictures = Pictures::new(renderer)?;
+) -> Result<Pixels, PicturesError> {
+    let (mut pictures, buffers, _) = Pictures::new(engine, scene, options.size)?;
     // What each pixel shows
     let positions: Vec<[f32; 4]> = pictures.renderer.g_buffer()[Plane::Position]
         .download(Usage::COMPUTE_READ)

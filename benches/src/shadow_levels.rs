@@ -10,11 +10,12 @@ use crate::textures::{clocked, is_software};
 use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory};
 use arealight::{Effects, LightTable};
 use arealight_engine::host::Host;
-use arealight_engine::{Engine, EngineError, Reference, SceneRenderer, ShadowedView};
-use arealight_scene::{Camera, Scene, SceneBuffers};
+use arealight_engine::{Engine, EngineError, Reference, ShadowedView};
+use arealight_scene::{Scene, SceneBuffers};
 use arealight_vk::{ShadowStage, TableFormat};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use pictures::Pictures;
+pub use pictures::PicturesError;
 use serde::{Deserialize, Serialize};
 
 /// What to run.
@@ -169,24 +170,6 @@ pub struct ShadowLevels {
     pub scenes: Vec<SceneResult>,
 }
 
-/// Why there is no result.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ShadowLevelsError {
-    /// The device, or a scene that does not fit it.
-    #[error(transparent)]
-    Engine(#[from] EngineError),
-    /// Pictures of different sizes.
-    #[error(transparent)]
-    Size(#[from] SizeError),
-    /// A scene without a camera and without anything to frame.
-    #[error("{scene}: nothing to see")]
-    NoCamera {
-        /// Its name.
-        scene: String,
-    },
-}
-
 /// Runs every level on each scene. `progress` is told of steps done.
 pub fn run(
     host: &Host,
@@ -194,7 +177,7 @@ pub fn run(
     scenes: &[Scene],
     options: &Options,
     progress: &dyn Fn(u64),
-) -> Result<ShadowLevels, ShadowLevelsError> {
+) -> Result<ShadowLevels, PicturesError> {
     let mut engine = Engine::new(host.clone(), table, TableFormat::default())?;
     let mut results = Vec::with_capacity(scenes.len());
     for scene in scenes {
@@ -215,19 +198,10 @@ fn run_scene(
     scene: &Scene,
     options: &Options,
     progress: &dyn Fn(u64),
-) -> Result<SceneResult, ShadowLevelsError> {
-    let size = [options.size; 2];
-    let camera: Camera =
-        scene.camera(None, 1.0).ok_or_else(|| ShadowLevelsError::NoCamera { scene: scene.name.clone() })?;
-    let buffers = SceneBuffers::new(scene, camera.position).map_err(EngineError::from)?;
-    let constants = buffers.constants(&camera, size, Vec3::ZERO);
-    let renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
-    let mut view = View {
-        host: engine.host(),
-        pictures: Pictures::new(renderer)?,
-        scene: &buffers,
-        surfaces: scene.effects() & Effects::SURFACES,
-    };
+) -> Result<SceneResult, PicturesError> {
+    let (pictures, buffers, _) = Pictures::new(engine, scene, [options.size; 2])?;
+    let surfaces = scene.effects() & Effects::SURFACES;
+    let mut view = View { host: engine.host(), pictures, scene: &buffers, surfaces };
     let lights = view.pictures.renderer.lights();
     let samples = options.samples_under(lights.light_count + lights.shape_count);
     let truth = Truth::new(&mut view, samples, progress)?;
@@ -255,7 +229,7 @@ struct Truth {
 }
 
 impl Truth {
-    fn new(view: &mut View<'_>, samples: u32, progress: &dyn Fn(u64)) -> Result<Self, ShadowLevelsError> {
+    fn new(view: &mut View<'_>, samples: u32, progress: &dyn Fn(u64)) -> Result<Self, PicturesError> {
         let mut picture = |seed, shadows| {
             let mut told = 0;
             view.pictures.begin()?;
@@ -304,7 +278,7 @@ impl View<'_> {
         ShadeOptions { surfaces: self.surfaces, shadow_rays, output, ..ShadeOptions::default() }
     }
 
-    fn run(&mut self, level: Level, truth: &Truth, rounds: u32) -> Result<LevelResult, ShadowLevelsError> {
+    fn run(&mut self, level: Level, truth: &Truth, rounds: u32) -> Result<LevelResult, PicturesError> {
         // A picture, by which pipelines are made too
         let passes = self.passes(level)?;
         let radiance = self.picture(level, passes.as_ref())?;

@@ -6,7 +6,7 @@
 mod film;
 mod text;
 
-use crate::shadow_levels::ShadowLevelsError;
+use crate::shadow_levels::PicturesError;
 use crate::shadows::{ShadowErrors, ShadowTruth, SizeError};
 use arealight::LightTable;
 use arealight_engine::Engine;
@@ -186,9 +186,9 @@ pub fn run(
     scenes: &[Scene],
     options: &Options,
     progress: &dyn Fn(u64),
-) -> Result<ShadowMotion, ShadowLevelsError> {
+) -> Result<ShadowMotion, PicturesError> {
     let engine = Engine::new(host.clone(), table, TableFormat::default())?;
-    let run_scene = |scene: &Scene| -> Result<SceneFilms, ShadowLevelsError> {
+    let run_scene = |scene: &Scene| -> Result<SceneFilms, PicturesError> {
         let (mut films, mut noise) = (vec![], (0.0, 0));
         for motion in Motion::ALL {
             let mut sums = [Sums::default(); Scheme::ALL.len()];
@@ -264,12 +264,7 @@ fn root((square, count): (f64, usize)) -> f64 {
 
 impl Sums {
     /// Adds a frame, less its truth's noise.
-    fn add(
-        &mut self,
-        truth: &FrameTruth,
-        found: &[f64],
-        uncovered: &[bool],
-    ) -> Result<(), ShadowLevelsError> {
+    fn add(&mut self, truth: &FrameTruth, found: &[f64], uncovered: &[bool]) -> Result<(), PicturesError> {
         let (errors, noise) = (truth.errors(found)?, truth.errors(&truth.half)?);
         let rest = |error: f64, noise: f64| error * error - noise * noise;
         let all = rest(errors.rmse, noise.rmse);

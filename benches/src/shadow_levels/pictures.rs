@@ -1,7 +1,27 @@
 //! Pictures of what surfaces reflect, one after the other of the same view.
 
-use arealight_engine::{EngineError, SceneRenderer, ShadowedView};
-use glam::{DVec3, Vec4};
+use crate::shadows::SizeError;
+use arealight_engine::{Engine, EngineError, SceneRenderer, ShadowedView};
+use arealight_scene::{Camera, Scene, SceneBuffers};
+use glam::{DVec3, Vec3, Vec4};
+
+/// Why there are no pictures of a scene, or none that compare.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PicturesError {
+    /// The device, or a scene that does not fit it.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// Pictures of different sizes.
+    #[error(transparent)]
+    Size(#[from] SizeError),
+    /// A scene without a camera and without anything to frame.
+    #[error("{scene}: nothing to see")]
+    NoCamera {
+        /// Its name.
+        scene: String,
+    },
+}
 
 /// A view whose radiance is read without what the camera sees of lamps.
 pub(crate) struct Pictures<'a> {
@@ -14,10 +34,22 @@ fn colors(texels: Vec<Vec4>) -> Vec<DVec3> {
 }
 
 impl<'a> Pictures<'a> {
-    pub fn new(mut renderer: SceneRenderer<'a>) -> Result<Self, EngineError> {
-        renderer.visibility()?;
-        let emission = colors(renderer.radiance()?);
-        Ok(Self { renderer, emission })
+    /// Of a scene by its first camera, with what is on the device of it.
+    pub fn new(
+        engine: &'a Engine,
+        scene: &Scene,
+        size: [u32; 2],
+    ) -> Result<(Self, SceneBuffers, Camera), PicturesError> {
+        let aspect = f64::from(size[0]) / f64::from(size[1].max(1));
+        let camera = scene
+            .camera(None, aspect)
+            .ok_or_else(|| PicturesError::NoCamera { scene: scene.name.clone() })?;
+        let buffers = SceneBuffers::new(scene, camera.position).map_err(EngineError::from)?;
+        let constants = buffers.constants(&camera, size, Vec3::ZERO);
+        let renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
+        let mut pictures = Self { renderer, emission: vec![] };
+        pictures.look_again()?;
+        Ok((pictures, buffers, camera))
     }
 
     /// As [`Pictures::begin`], for a view that has changed.

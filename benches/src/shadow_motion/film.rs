@@ -1,13 +1,13 @@
 //! A scene that is looked at frame by frame, by every scheme alike.
 
 use super::{FrameTruth, Motion, Options, Scheme};
-use crate::shadow_levels::ShadowLevelsError;
+use crate::shadow_levels::PicturesError;
 use crate::shadow_levels::pictures::{Pictures, unshadowed};
 use crate::shadows::{ShadowTruth, part_found};
 use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory};
 use arealight::{Effects, Light, LightShape, Plane};
 use arealight_engine::host::Usage;
-use arealight_engine::{Engine, EngineError, SceneRenderer, ShadowedView};
+use arealight_engine::{Engine, EngineError, ShadowedView};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_vk::ShadowStage;
 use glam::{DQuat, DVec3, Vec3};
@@ -46,20 +46,14 @@ impl<'a> Film<'a> {
         scene: &'a Scene,
         motion: Motion,
         options: &Options,
-    ) -> Result<Self, ShadowLevelsError> {
+    ) -> Result<Self, PicturesError> {
         let size = options.size;
-        let aspect = f64::from(size[0]) / f64::from(size[1].max(1));
-        let camera = scene
-            .camera(None, aspect)
-            .ok_or_else(|| ShadowLevelsError::NoCamera { scene: scene.name.clone() })?;
-        let buffers = SceneBuffers::new(scene, camera.position).map_err(EngineError::from)?;
-        let constants = buffers.constants(&camera, size, Vec3::ZERO);
-        let renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
+        let (pictures, buffers, camera) = Pictures::new(engine, scene, size)?;
         let passes = |shadow_rays, filter| {
             let surfaces = scene.effects() & Effects::SURFACES;
             let options =
                 ShadeOptions { surfaces, shadow_rays, output: Output::default(), ..ShadeOptions::default() };
-            renderer.shadowed(&buffers, options, filter)
+            pictures.renderer.shadowed(&buffers, options, filter)
         };
         let scheme = |scheme: &Scheme| {
             let history = if scheme.history { ShadowHistory::Camera } else { ShadowHistory::Off };
@@ -71,7 +65,7 @@ impl<'a> Film<'a> {
             scene,
             schemes,
             truth,
-            pictures: Pictures::new(renderer)?,
+            pictures,
             buffers,
             motion,
             size,
@@ -131,7 +125,7 @@ impl<'a> Film<'a> {
     }
 
     /// The frame's truth: a mean over so many frames of rays, of seeds that no scheme has.
-    pub fn truth(&mut self, frames: u32) -> Result<FrameTruth, ShadowLevelsError> {
+    pub fn truth(&mut self, frames: u32) -> Result<FrameTruth, PicturesError> {
         let renderer = &mut self.pictures.renderer;
         let pixels = self.size.map(|side| side as usize).iter().product();
         let mut sums = [vec![0.0; pixels], vec![0.0; pixels]];

@@ -295,8 +295,8 @@ fn a_mapping_that_bends_follows_the_triangles() {
 #[test]
 fn a_fan_is_one_outline_however_it_is_turned() {
     let turn = glam::DQuat::from_rotation_x(0.7) * glam::DQuat::from_rotation_y(0.4);
-    let (mut positions, triangles) = fan(500, |_| 1.0);
-    positions.iter_mut().for_each(|p| *p = turn * *p);
+    let (flat, triangles) = fan(500, |_| 1.0);
+    let positions: Vec<DVec3> = flat.into_iter().map(|p| turn * p).collect();
     let merged = mapped(&positions, &triangles, |p| (turn.inverse() * p).truncate() * 0.5 + 0.5);
     assert_eq!((merged.polygons.len(), merged.seams), (1, false));
     // The twin: a mapping along the edge and out from the middle bends everywhere; a few neighbours are
