@@ -1,6 +1,6 @@
 //! The viewer without a window: what a script does is what the frames show.
 
-use crate::common::{device, difference, json_of, picture, refuse, run, scene};
+use crate::common::{device, difference, json_of, picture, printed, refuse, run, scene};
 use serde_json::Value;
 
 /// Every mode, a quarter of a second each; a lamp of the room is dragged, and then the view.
@@ -166,19 +166,16 @@ fn what_was_made_of_a_scene_is_rendered() {
     let view = "0.75 press 0.5 0.98\n1 move 0.6 0.9\n1 release\n";
     let recording = record("sweep.glb", &format!("0 key s\n{lamp}{view}"));
     let folder = recording.folder.path();
-    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/sweep.glb");
-    let render = |more: &[&str]| {
-        let common =
-            ["render", scene.to_str().unwrap(), "--size", "160x96", "--supersample", "1", "--shadows", "off"];
-        assert_eq!(run(folder, &[&common, &["-o", "still.png"], more].concat()).status.code(), Some(0));
-        image::open(folder.join("still.png")).unwrap().to_rgb8().into_raw()
+    let still = |more: &str| {
+        let options = format!("--size 160x96 --supersample 1 --shadows off -o still.png{more}");
+        let arguments: Vec<&str> = options.split(' ').collect();
+        printed(&run(folder, &[&["render", &scene("sweep.glb")], &arguments[..]].concat()));
+        picture(folder, "still.png").into_raw()
     };
     let last = recording.pixels(recording.frames.len() - 1);
     // The frame has words in a corner
-    let [same, other] = [&["--look", "out/look.json"][..], &[]].map(|more| difference(&render(more), &last));
+    let [same, other] = [" --look out/look.json", ""].map(|more| difference(&still(more), &last));
     assert!(same < 0.1 && other > 0.5, "{same}, {other}");
-    let room = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/room.glb");
-    let refused = run(folder, &["render", room.to_str().unwrap(), "--look", "out/look.json"]);
-    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(refused.status.code() == Some(3) && said.contains("look.json: it is of 1 lamps"), "{said}");
+    let arguments = ["render", &scene("room.glb"), "--look", "out/look.json"];
+    refuse(folder, &arguments, 3, &["look.json: it is of 1 lamps"]);
 }
