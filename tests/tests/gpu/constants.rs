@@ -105,7 +105,7 @@ fn flags_have_the_same_bits_in_glsl() {
     assert_constants(FOOTPRINT_GLSL, "AREALIGHT_NO_", &[("IMAGE", GpuLight::NO_TEXTURE.into())]);
     assert_constants(LIGHT_RECORDS_GLSL, "SHAPE_", &of!(gpu::GpuShape: DISK SPHERE TUBE TWO_SIDED));
     assert_constants(SCENE_GLSL, "TRIANGLE_", &of!(GpuTriangle: LAMP TANGENTS MIRRORED COLORS GROUPS_SHIFT));
-    assert_constants(SCENE_GLSL, "MATERIAL_", &of!(GpuMaterial: DOUBLE_SIDED ALPHA_MASK ALPHA_BLEND));
+    assert_constants(SCENE_GLSL, "MATERIAL_", &of!(GpuMaterial: DOUBLE_SIDED ALPHA_MASK ALPHA_BLEND UNLIT));
     assert_constants(SCENE_GLSL, "NO_TEXTURE", &[("", GpuMaterial::NO_TEXTURE.into())]);
     let texture = of!(GpuTexture: SRGB CLAMP_U CLAMP_V MIRROR_U MIRROR_V);
     assert_constants(SCENE_GLSL, "TEXTURE_", &texture);

@@ -241,7 +241,7 @@ fn an_unlit_surface_shows_its_base_color_by_any_light() {
         let mut scene = scene(lambert(0.25));
         scene.materials[0].unlit = unlit;
         let mut view = View::new(&engine, &scene, &camera());
-        let found = view.shaded(|renderer| renderer.shade(Effects::LOBES, Quality::default()));
+        let found = view.shaded(|renderer| renderer.shade(scene.surfaces(), Quality::default()));
         assert!(!unlit || found.iter().all(|radiance| [0.0, 0.25].contains(radiance)));
         found.iter().sum::<f64>() / found.len() as f64
     };

@@ -22,7 +22,8 @@ pub struct LightArguments {
     /// around what the camera sees, for models without lights (`studio`)
     #[arg(long, value_name = "RIG", default_value = "file")]
     lights: Rig,
-    /// The camera and lamps as `arealight view` saved them, with `p`, of this scene
+    /// The camera and lamps of this scene as `arealight view` saved them, by `p`; its camera goes before
+    /// --camera
     #[arg(long, value_name = "FILE")]
     look: Option<PathBuf>,
 }

@@ -41,12 +41,15 @@ const OF_MATERIALS: [(Effects, Needs); 11] = [
 /// What a scene needs and nothing else, each effect once, with its reason, in the order of their bits.
 /// [`Scene::effects`] is their union.
 pub fn required_effects(scene: &Scene) -> Vec<RequiredEffect> {
+    // What is not lit reflects nothing, which has to be said where other surfaces reflect
+    let is_glossy = scene.materials.iter().any(|m| !m.unlit && has_glossy_lobe(m));
     let reason = |effect| {
+        let is_asked = |m: &SceneMaterial| !m.unlit || (is_glossy && effect == Effects::SPECULAR_INPUT);
         // Only materials that something has been made of are in a scene
         if let Some((_, needs)) = OF_MATERIALS.into_iter().find(|(of_materials, _)| *of_materials == effect) {
             return names(
                 "material",
-                scene.materials.iter().filter(|m| !m.unlit && needs(m)).map(|m| &*m.name),
+                scene.materials.iter().filter(|m| needs(m) && is_asked(m)).map(|m| &*m.name),
             );
         }
         names("light", scene.lights.iter().filter(|l| l.effects().contains(effect)).map(|l| &*l.name))

@@ -510,6 +510,10 @@ fn unlit_materials_are_their_base_color_and_light_nothing() {
     );
     assert!(scene.lights.is_empty());
     assert_eq!(scene.effects(), Effects::empty());
+    // Beside what reflects it has to say that it doesn't
+    let mut beside = scene.clone();
+    beside.materials.push(SceneMaterial::default());
+    assert!(beside.effects().contains(Effects::GLOSSY | Effects::SPECULAR_INPUT));
     let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
     assert_eq!(gpu.flags, GpuMaterial::UNLIT | GpuMaterial::DOUBLE_SIDED);
     // The twin: without the extension it is a light, and has lobes
