@@ -3,7 +3,6 @@
 import bpy
 
 
-
 def render(path, size, samples, seed=0):
     """Writes radiance to `path`, an EXR, with so many samples a pixel."""
     scene = bpy.context.scene

@@ -47,10 +47,8 @@ pub fn required_effects(scene: &Scene) -> Vec<RequiredEffect> {
         let is_asked = |m: &SceneMaterial| !m.unlit || (is_glossy && effect == Effects::SPECULAR_INPUT);
         // Only materials that something has been made of are in a scene
         if let Some((_, needs)) = OF_MATERIALS.into_iter().find(|(of_materials, _)| *of_materials == effect) {
-            return names(
-                "material",
-                scene.materials.iter().filter(|m| needs(m) && is_asked(m)).map(|m| &*m.name),
-            );
+            let needing = scene.materials.iter().filter(|m| needs(m) && is_asked(m));
+            return names("material", needing.map(|m| &*m.name));
         }
         names("light", scene.lights.iter().filter(|l| l.effects().contains(effect)).map(|l| &*l.name))
     };

@@ -63,8 +63,7 @@ pub struct Edit {
     pub color: [f32; 3],
     /// Degrees from its front, beyond which it does not shine; 90 is as it was.
     pub beam: f64,
-    /// The groups of surfaces of which it lights those that it did not, or no more those that it did: bits of
-    /// [`Light::links`].
+    /// Bits of [`Light::links`] to flip.
     pub links: u8,
 }
 

@@ -147,7 +147,7 @@ fn edit(ui: &mut Ui, state: &mut State, shown: &Shown<'_>, lamp: usize) {
     for ((degrees, range), name) in edit.turn.iter_mut().zip(Edit::TURN).zip(["turn", "tilt"]) {
         ui.add(Slider::new(degrees, range).suffix("°").text(name));
     }
-    if shown.scene.triangles.iter().any(|triangle| triangle.groups != 0) {
+    if state.has_groups {
         let lights = &shown.scene.lamps[lamp].lights;
         let links = shown.scene.lights.get(lights.start).map_or(0, |light| light.links);
         ui.horizontal(|ui| {

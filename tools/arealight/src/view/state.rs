@@ -173,6 +173,8 @@ pub struct State {
     pub quit: bool,
     /// Whether there is a yardstick for the scene's lights.
     pub has_yardstick: bool,
+    /// Whether some surface is in a group, which lamps may be linked to.
+    pub has_groups: bool,
     home: Orbit,
     first_exposure: f32,
     pub(super) first_fog: SceneFog,
@@ -210,6 +212,7 @@ impl State {
             save: false,
             quit: false,
             has_yardstick,
+            has_groups: scene.triangles.iter().any(|triangle| triangle.groups != 0),
             home,
             first_exposure: exposure,
             first_fog: fog,

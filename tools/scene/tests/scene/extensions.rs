@@ -3,8 +3,10 @@
 use crate::shapes::panel;
 use crate::writer::{Writer, png};
 use crate::{emitter_with, error, load, panel_with, warnings};
-use arealight_scene::{Scene, Warning};
-use glam::DVec3;
+use arealight::Effects;
+use arealight_scene::{Scene, SceneBuffers, SceneMaterial, Warning};
+use arealight_tool_kernels::gpu::GpuMaterial;
+use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
 fn requiring(names: &[&str]) -> Writer {
@@ -137,7 +139,7 @@ fn quantized_meshes_are_read() {
     writer.root["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
     let scene = load(writer);
     assert!((scene.lights[0].shape.area_vector() - DVec3::Z).length() < 1e-7);
-    assert_eq!(scene.triangles[0].normals[0], glam::Vec3::Z);
+    assert_eq!(scene.triangles[0].normals[0], Vec3::Z);
     let uvs: Vec<_> = scene.triangles.iter().flat_map(|triangle| triangle.uvs).collect();
     let lowest = uvs.iter().fold(0.0_f32, |lowest, uv| lowest.min(uv.y));
     assert_eq!(lowest, -1.0, "the lowest number is -1, not less");
@@ -222,4 +224,30 @@ fn the_document_has_the_programs_words() {
         "| x | warned | | lights.rs |",
     ];
     assert_eq!(wrong_rows(&format!("{head}{}", bad.join("\n"))), bad);
+}
+
+#[test]
+fn unlit_materials_are_their_base_color_and_light_nothing() {
+    let fields = |extensions: Value| {
+        json!({ "emissiveFactor": [1, 1, 1], "doubleSided": true, "extensions": extensions,
+            "pbrMetallicRoughness": { "baseColorFactor": [0.5, 0.25, 0.125, 1], "metallicFactor": 0 } })
+    };
+    let scene = load(panel_with(fields(json!({ "KHR_materials_unlit": {} }))));
+    let SceneMaterial { material, emission, unlit, double_sided, .. } = &scene.materials[0];
+    assert_eq!(material.base_color, Vec3::new(0.5, 0.25, 0.125));
+    assert_eq!(
+        (*emission, material.dielectric_f0, *unlit, *double_sided),
+        (Vec3::ZERO, Vec3::ZERO, true, true)
+    );
+    assert!(scene.lights.is_empty());
+    assert_eq!(scene.effects(), Effects::empty());
+    // Beside what reflects it has to say that it doesn't
+    let mut beside = scene.clone();
+    beside.materials.push(SceneMaterial::default());
+    assert!(beside.effects().contains(Effects::GLOSSY | Effects::SPECULAR_INPUT));
+    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
+    assert_eq!(gpu.flags, GpuMaterial::UNLIT | GpuMaterial::DOUBLE_SIDED);
+    // The twin: without the extension it is a light, and has lobes
+    let lit = load(panel_with(fields(json!({}))));
+    assert!(!lit.lights.is_empty() && lit.effects().contains(Effects::DIFFUSE));
 }

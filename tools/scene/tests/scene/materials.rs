@@ -6,7 +6,7 @@ use crate::{error, load, panel_with, warnings};
 use arealight::Effects;
 use arealight_oracle::material::Material;
 use arealight_oracle::thin_film::ThinFilm;
-use arealight_scene::{Scene, SceneBuffers, SceneMaterial, Wrap, required_effects};
+use arealight_scene::{Scene, SceneBuffers, Wrap, required_effects};
 use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture};
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
@@ -493,30 +493,4 @@ fn panes_are_read_with_their_texture() {
     let without = load(textured(with_pane(json!({ "transmissionTexture": { "index": 0 } }))));
     assert_eq!((without.materials[0].glass_texture, without.textures.len()), (None, 0));
     assert!(!without.effects().contains(Effects::GLASS));
-}
-
-#[test]
-fn unlit_materials_are_their_base_color_and_light_nothing() {
-    let fields = |extensions: Value| {
-        json!({ "emissiveFactor": [1, 1, 1], "doubleSided": true, "extensions": extensions,
-            "pbrMetallicRoughness": { "baseColorFactor": [0.5, 0.25, 0.125, 1], "metallicFactor": 0 } })
-    };
-    let scene = load(panel_with(fields(json!({ "KHR_materials_unlit": {} }))));
-    let SceneMaterial { material, emission, unlit, double_sided, .. } = &scene.materials[0];
-    assert_eq!(material.base_color, Vec3::new(0.5, 0.25, 0.125));
-    assert_eq!(
-        (*emission, material.dielectric_f0, *unlit, *double_sided),
-        (Vec3::ZERO, Vec3::ZERO, true, true)
-    );
-    assert!(scene.lights.is_empty());
-    assert_eq!(scene.effects(), Effects::empty());
-    // Beside what reflects it has to say that it doesn't
-    let mut beside = scene.clone();
-    beside.materials.push(SceneMaterial::default());
-    assert!(beside.effects().contains(Effects::GLOSSY | Effects::SPECULAR_INPUT));
-    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
-    assert_eq!(gpu.flags, GpuMaterial::UNLIT | GpuMaterial::DOUBLE_SIDED);
-    // The twin: without the extension it is a light, and has lobes
-    let lit = load(panel_with(fields(json!({}))));
-    assert!(!lit.lights.is_empty() && lit.effects().contains(Effects::DIFFUSE));
 }
