@@ -97,6 +97,8 @@ echo "With the table as exported:"
 compare test "$folder/points.json"
 echo "With its first layer alone, which must differ:"
 must_differ test-first-layer "$folder/points.json"
+echo "By the clipless method, the page's other half, which must differ:"
+must_differ test-clipless "$folder/points.json"
 echo "A lamp that a pointer has dragged, in the page's own picture:"
 compare test-drag
 echo "The same as if it had stayed, which must differ:"

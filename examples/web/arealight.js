@@ -1,7 +1,8 @@
 // Arealight in WebGPU: the exported kernel, the table, lights as records, and a frame. All layouts come from the export's manifest.json.
 
-// Loads what `arealight export DIR --target webgpu --effects ...` wrote. `table` changes the table's layers, for tests of what a wrong one does.
-export async function load(device, folder, table = (layers) => layers) {
+// Loads what `arealight export DIR --target webgpu --effects ...` wrote. `table` changes the table's layers, for tests of what a wrong one does;
+// `kernel` changes the kernel, see clipless.js.
+export async function load(device, folder, table = (layers) => layers, kernel = (code) => code) {
     const fetched = async (path) => {
         const response = await fetch(`${folder}/${path}`);
         if (!response.ok) throw new Error(`${folder}/${path}: ${response.status}`);
@@ -9,7 +10,7 @@ export async function load(device, folder, table = (layers) => layers) {
     };
     const manifest = await (await fetched("manifest.json")).json();
     const target = manifest.targets.webgpu;
-    const code = await (await fetched(target.file)).text();
+    const code = kernel(await (await fetched(target.file)).text());
     const pipeline = await device.createComputePipelineAsync({
         layout: "auto",
         compute: { module: device.createShaderModule({ code }), entryPoint: target.entry_point },

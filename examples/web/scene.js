@@ -14,7 +14,7 @@ const lamp = (radiance, center, u, v, outline) => ({ radiance, center, u, v, out
 const QUAD = [[-1, -1], [1, -1], [1, 1], [-1, 1]], TRIANGLE = [[-1, -1], [1, -1], [0, 1]];
 export const lamps = [
     lamp([9, 6, 3], [-1.35, 0.95, -1.1], [0.5, 0, -0.25], [0, 0.62, 0], QUAD),
-    lamp([2.5, 5, 10], [1.3, 0.95, -1.0], [0.7, 0, 0.4], [0, 0.7, 0], TRIANGLE),
+    lamp([2.5, 5, 10], [1.2, 0.4, -0.5], [0.8, 0, 0.4], [0, 0.8, 0], TRIANGLE),
     lamp([5, 5.2, 5.5], [0, 2.0, 1.6], [1.1, 0, 0], [0, -0.12, 0.35], QUAD),
 ];
 export const vertices = ({ center, u, v, outline, scale }) =>

@@ -1,14 +1,15 @@
-// Shows a frame's radiance and the lamps in it, on a canvas.
+// Shows the radiance of two frames, either side of a line, and the lamps in it, on a canvas.
 
 import { camera, lamps } from "./scene.js";
 
 const CODE = /* wgsl */ `
-struct View { position: vec4f, right: vec4f, up: vec4f, forward: vec4f } // tan in up.w, chosen lamp in right.w, exposure in forward.w
+struct View { position: vec4f, right: vec4f, up: vec4f, forward: vec4f } // the line in position.w, tan in up.w, chosen lamp in right.w, exposure in forward.w
 struct Lamp { radiance: vec4f, normal: vec4f, vertices: array<vec4f, 4> } // the count of vertices in radiance.w
 @group(0) @binding(0) var radiance: texture_2d<f32>;
 @group(0) @binding(1) var position: texture_2d<f32>;
 @group(0) @binding(2) var<uniform> view: View;
 @group(0) @binding(3) var<storage, read> lamps: array<Lamp>;
+@group(0) @binding(4) var other: texture_2d<f32>; // on the right of the line
 
 @vertex fn corner(@builtin(vertex_index) at: u32) -> @builtin(position) vec4f {
     return vec4f(f32(at & 1u) * 4.0 - 1.0, f32(at >> 1u) * 4.0 - 1.0, 0.0, 1.0);
@@ -22,7 +23,9 @@ struct Lamp { radiance: vec4f, normal: vec4f, vertices: array<vec4f, 4> } // the
         + (0.5 * size.y - place.y) * scale * view.up.xyz);
     let surface = textureLoad(position, pixel, 0);
     var nearest = select(1e9, distance(surface.xyz, view.position.xyz), surface.w > 0.0);
-    var color = textureLoad(radiance, pixel, 0).rgb;
+    let line = place.x - view.position.w;
+    if (abs(line) < 1.0) { return vec4f(0.9); }
+    var color = select(textureLoad(radiance, pixel, 0), textureLoad(other, pixel, 0), line > 0.0).rgb;
     for (var i = 0u; i < arrayLength(&lamps); i++) {
         let normal = lamps[i].normal.xyz;
         let t = dot(lamps[i].vertices[0].xyz - view.position.xyz, normal) / dot(ray, normal);
@@ -48,7 +51,7 @@ struct Lamp { radiance: vec4f, normal: vec4f, vertices: array<vec4f, 4> } // the
 }`;
 
 export class Shown {
-    constructor(device, canvas, frame) {
+    constructor(device, canvas, [left, right]) {
         this.device = device;
         this.context = canvas.getContext("webgpu");
         const format = navigator.gpu.getPreferredCanvasFormat();
@@ -57,7 +60,7 @@ export class Shown {
         const unfilterable = { texture: { sampleType: "unfilterable-float" } };
         const visibility = GPUShaderStage.FRAGMENT;
         const layout = device.createBindGroupLayout({
-            entries: [unfilterable, unfilterable, { buffer: {} }, { buffer: { type: "read-only-storage" } }].map((entry, binding) => ({
+            entries: [unfilterable, unfilterable, { buffer: {} }, { buffer: { type: "read-only-storage" } }, unfilterable].map((entry, binding) => ({
                 binding,
                 visibility,
                 ...entry,
@@ -71,13 +74,14 @@ export class Shown {
         const buffer = (floats, usage) => device.createBuffer({ size: 4 * floats, usage: usage | GPUBufferUsage.COPY_DST });
         this.view = buffer(16, GPUBufferUsage.UNIFORM);
         this.lamps = buffer(24 * lamps.length, GPUBufferUsage.STORAGE);
-        const views = [frame.radiance.createView(), frame.position.createView()];
-        const entries = [...views, { buffer: this.view }, { buffer: this.lamps }].map((resource, binding) => ({ binding, resource }));
+        const [radiance, position, other] = [left.radiance, left.position, right.radiance].map((texture) => texture.createView());
+        const entries = [radiance, position, { buffer: this.view }, { buffer: this.lamps }, other].map((resource, binding) => ({ binding, resource }));
         this.set = device.createBindGroup({ layout, entries });
     }
 
-    draw(commands, lights, chosen, exposure) {
-        const view = [camera.position, 0, camera.right, chosen, camera.up, camera.tan, camera.forward, exposure];
+    // `line`: where the two frames meet, in pixels from the left.
+    draw(commands, lights, chosen, exposure, line) {
+        const view = [camera.position, line, camera.right, chosen, camera.up, camera.tan, camera.forward, exposure];
         this.device.queue.writeBuffer(this.view, 0, new Float32Array(view.flat()));
         const records = lights.flatMap(({ radiance, vertices, normal }) => {
             const rows = [0, 1, 2, 3].flatMap((at) => [...(vertices[at] ?? vertices[0]), 0]);
