@@ -64,7 +64,8 @@ impl Images {
 /// An image: OpenEXR, linear, its channels R, G and B, where it may have so many texels.
 fn load_image(path: &Path, mut take: impl FnMut(u64) -> Result<(), String>) -> Result<Texture, String> {
     // The header first: what it says is not yet to be trusted with memory
-    let header = exr::meta::MetaData::read_from_file(path, true).map_err(|error| error.to_string())?;
+    let header = exr::meta::MetaData::read_from_file(path, true)
+        .map_err(|error| format!("is not read as OpenEXR ({error}); pictures of radiance are .exr"))?;
     for layer in &header.headers {
         let (width, height) = (layer.layer_size.width(), layer.layer_size.height());
         if width > MAX_SIDE || height > MAX_SIDE {

@@ -39,11 +39,12 @@ fn reason(required: &[RequiredEffect], effect: Effects) -> Option<&str> {
 
 fn to_text(required: &[RequiredEffect]) -> String {
     let mut lines = vec![format!("{:18} needed by", "effect")];
-    for effect in Effects::all().iter() {
-        lines.push(format!("{:18} {}", effect.to_string(), reason(required, effect).unwrap_or("-")));
-    }
     let set: Effects = required.iter().map(|one| one.effect).collect();
-    lines.push(format!("\nThis scene's set: {set}\n"));
+    lines.extend(
+        set.iter()
+            .filter_map(|effect| Some(format!("{:18} {}", effect.to_string(), reason(required, effect)?))),
+    );
+    lines.push(format!("\nThis scene's set: {set}\nWhat it leaves out: {}\n", Effects::all() - set));
     lines.join("\n")
 }
 

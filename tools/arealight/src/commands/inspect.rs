@@ -186,7 +186,7 @@ impl Summary<'_> {
              axes           {}\n\
              frame          {}\n\
              normalisation  {}\n\
-             size           {size} x {size} nodes, {} KiB as float32\n\n",
+             size           {size} x {size} nodes, {} KiB on a GPU (float16)\n\n",
             self.name,
             description.brdf.escape_debug(),
             description.made_by.escape_debug(),
@@ -196,7 +196,7 @@ impl Summary<'_> {
             arealight_table::AXES,
             arealight_table::FRAME,
             arealight_table::NORMALISATION,
-            size as usize * size as usize * self.channels.len() * 4 / 1024,
+            size * size * arealight::table::LAYERS * 4 * 2 / 1024,
         );
         let heads = ["layer", "channel", "least", "most", "step"];
         let [layer, channel, least, most, step] = heads;

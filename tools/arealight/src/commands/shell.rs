@@ -32,6 +32,7 @@ pub fn completions(arguments: &Completions, mut program: Command) -> Result<Exit
 pub fn man(arguments: &Man, program: Command) -> Result<ExitCode, Failure> {
     let mut program = program.disable_help_subcommand(true);
     program.build();
+    std::fs::create_dir_all(&arguments.folder).map_err(|error| Failure::output(&arguments.folder, error))?;
     page(&program, "arealight", &arguments.folder)?;
     Ok(ExitCode::SUCCESS)
 }
