@@ -84,19 +84,23 @@ float coverage(ivec2 texel, int side) {
     return constants.is_ellipse == 0u ? 1.0 : clamp(inside + 0.5, 0.0, 1.0);
 }
 
-// The mean of a few texels side by side, `step` of them; of many every few.
-vec4 texels(ivec2 first, ivec2 step, int layer, int mip, int side) {
-    const int MOST = 4;
-    int count = min(step.x * step.y, MOST);
-    vec4 sum = vec4(0.0);
-    for (int i = 0; i < count; i++) {
-        ivec2 texel = first + (2 * i + 1) * step / (2 * count);
-        sum += coverage(texel, side) * texelFetch(all_levels, ivec3(texel, layer), mip);
-    }
-    return sum / float(count);
-}
-
 const int BLOCK = 4; // nodes
+vec2 places[BLOCK];
+vec4 a[BLOCK];
+vec4 b_u[BLOCK];
+vec4 b_v[BLOCK];
+
+// Adds what all nodes see of a light's part at `middle`; `is_far`: all the same, in A.
+void add(vec2 middle, vec4 texel, vec2 stretch, float height, bool is_whole, bool is_far) {
+    for (int i = 0; i < BLOCK; i++) {
+        vec2 from = (middle - places[i]) / height;
+        float q = dot(from * stretch, from * stretch);
+        vec4 seen = (is_whole ? kernel(q) : kernel_left(q)) * texel;
+        a[i] += is_far ? texel : seen;
+        b_u[i] += from.x * seen;
+        b_v[i] += from.y * seen;
+    }
+}
 
 void main() {
     ivec2 corner = 2 * ivec2(gl_GlobalInvocationID.xy);
@@ -111,42 +115,45 @@ void main() {
     float longer = max(stretch.x, stretch.y);
     int finest = textureSize(all_levels, 0).x;
     float height = longer * FINEST_HEIGHT / float(finest) * exp2(float(constants.level));
-    vec2 places[BLOCK];
-    vec4 a[BLOCK];
-    vec4 b_u[BLOCK];
-    vec4 b_v[BLOCK];
     for (int i = 0; i < BLOCK; i++) {
         places[i] = node_place((vec2(corner + ivec2(i & 1, i >> 1)) + 0.5) / float(nodes));
         a[i] = b_u[i] = b_v[i] = vec4(0.0);
     }
-    // Sum over the mip with three texels in two heights, or more; along the shorter side over a few at once
+    // Sum over the mip with three texels in two heights, or more. Along the shorter side, where texels are
+    // closer, so many at once as are as long as one along the longer side
     bool is_whole = nodes <= WHOLE;
+    bool is_far = nodes == 1; // the last level is for all that is farther away, too
     int mip = is_whole ? max(findMSB(finest / WHOLE), 0) : constants.level + 2;
     int side = textureSize(all_levels, mip).x;
-    ivec2 step = is_whole ? ivec2(1) : ivec2(longer / stretch);
+    ivec2 step = is_whole ? ivec2(1) : min(ivec2(longer / stretch), side);
     vec2 reach = 3.0 * height / stretch;
     ivec2 first = ivec2(max(floor((places[0] - reach) * float(side)), 0.0)) / step * step;
-    ivec2 last = ivec2(min(ceil((places[BLOCK - 1] + reach) * float(side)), float(side))) - 1;
+    ivec2 end = ivec2(min(ceil((places[BLOCK - 1] + reach) * float(side)), float(side)));
     if (is_whole) {
         first = ivec2(0);
-        last = ivec2(side - 1);
+        end = ivec2(side);
     }
-    for (int y = first.y; y <= last.y; y += step.y) {
-        for (int x = first.x; x <= last.x; x += step.x) {
-            vec2 middle = (vec2(x, y) + 0.5 * vec2(step)) / float(side);
-            vec4 texel = texels(ivec2(x, y), step, int(image), mip, side);
-            for (int i = 0; i < BLOCK; i++) {
-                vec2 from = (middle - places[i]) / height;
-                float q = dot(from * stretch, from * stretch);
-                vec4 seen = (is_whole ? kernel(q) : kernel_left(q)) * texel;
-                // The last level is for all that is farther away, too
-                a[i] += nodes == 1 ? texel : seen;
-                b_u[i] += from.x * seen;
-                b_v[i] += from.y * seen;
-            }
+    bool is_one = step.x * step.y == 1; // most are: a loop less
+    for (int y = first.y; y < end.y && is_one; y++) {
+        for (int x = first.x; x < end.x; x++) {
+            vec4 texel = coverage(ivec2(x, y), side) * texelFetch(all_levels, ivec3(x, y, image), mip);
+            add((vec2(x, y) + 0.5) / float(side), texel, stretch, height, is_whole, is_far);
         }
     }
-    float share = float(step.x * step.y) / (PI * height * height * float(side) * float(side));
+    for (int y = first.y; y < end.y && !is_one; y += step.y) {
+        for (int x = first.x; x < end.x; x += step.x) {
+            ivec2 last = min(ivec2(x, y) + step, side);
+            vec4 sum = vec4(0.0);
+            for (int j = y; j < last.y; j++) {
+                for (int i = x; i < last.x; i++) {
+                    sum += coverage(ivec2(i, j), side) * texelFetch(all_levels, ivec3(i, j, image), mip);
+                }
+            }
+            vec2 middle = 0.5 * vec2(ivec2(x, y) + last) / float(side);
+            add(middle, sum, stretch, height, is_whole, is_far);
+        }
+    }
+    float share = 1.0 / (PI * height * height * float(side) * float(side));
     for (int i = 0; i < BLOCK; i++) {
         ivec2 node = corner + ivec2(i & 1, i >> 1);
         vec2 coordinate = (vec2(node) + 0.5) / float(nodes);
