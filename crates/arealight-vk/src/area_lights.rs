@@ -196,18 +196,11 @@ impl AreaLights {
             layouts.push(medium.set_layout());
             sizes.extend(medium.pool_sizes(count));
         }
-        let info =
-            vk::DescriptorPoolCreateInfo::default().max_sets(count * layouts.len() as u32).pool_sizes(&sizes);
-        let device = &self.context.device;
-        // SAFETY: the device is valid by the contract of Context::new; the layouts are the passes'.
-        unsafe {
-            self.pool = device.create_descriptor_pool(&info, None).call("vkCreateDescriptorPool")?;
-            for _ in 0..frames {
-                let info =
-                    vk::DescriptorSetAllocateInfo::default().descriptor_pool(self.pool).set_layouts(&layouts);
-                let sets = device.allocate_descriptor_sets(&info).call("vkAllocateDescriptorSets")?;
-                self.places.push(Place::new(&self.context, &self.allocator, sets)?);
-            }
+        let sets;
+        (self.pool, sets) = descriptor_sets(&self.context, &sizes, &layouts.repeat(frames))?;
+        for sets in sets.chunks(layouts.len()) {
+            // SAFETY: the same contract.
+            self.places.push(unsafe { Place::new(&self.context, &self.allocator, sets.to_vec()) }?);
         }
         Ok(())
     }
@@ -264,7 +257,7 @@ impl AreaLights {
         updates: &[(Resource, TextureUpdate)],
     ) -> Result<(), Error> {
         let Some(textures) = &mut self.textures else {
-            let message = "is none, but a texture is loaded: see AreaLightsInfo::textures".into();
+            let message = "is none in AreaLightsInfo, but a texture is loaded".into();
             return Err(Error::InvalidArgument { field: "textures", message });
         };
         // SAFETY: the same contract.
@@ -275,8 +268,8 @@ impl AreaLights {
     ///
     /// `lights` are in the world, and the positions of the G-buffer relative to `origin`, a place near the
     /// camera or the world's own. Of `view`, sizes, camera and matrix count; lights, seed and lists of tiles
-    /// are ours. `g_buffer` has the host's images, among them that of the radiance; table, lights and buffers
-    /// are ours. They may be others, and of another size, in each frame.
+    /// are ours. `g_buffer` has the host's images (light textures too, without [`AreaLightsInfo::textures`]);
+    /// table, lights and buffers are ours. They may be others, and of another size, in each frame.
     ///
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with compute; it is submitted
@@ -333,7 +326,7 @@ impl AreaLights {
         }
         let resources = ShadeResources {
             table: self.table.0.resource(),
-            light_textures: self.textures.as_ref().map(Textures::resource),
+            light_textures: self.textures.as_ref().map(Textures::resource).or(g_buffer.light_textures),
             lobe_horizons: Some(Resource::buffer(self.lobe_horizons.raw)),
             ..place.resources(g_buffer)
         };
@@ -431,6 +424,27 @@ fn place_of<T>(places: &mut [T], place: usize) -> Result<&mut T, Error> {
     let count = places.len();
     let message = format!("{place} is not there: frames_in_flight is {count}");
     places.get_mut(place).ok_or(Error::InvalidArgument { field: "place", message })
+}
+
+/// A pool, and all its sets.
+fn descriptor_sets(
+    Context { device, .. }: &Context,
+    sizes: &[vk::DescriptorPoolSize],
+    layouts: &[vk::DescriptorSetLayout],
+) -> Result<(vk::DescriptorPool, Vec<vk::DescriptorSet>), Error> {
+    let info = vk::DescriptorPoolCreateInfo::default().max_sets(layouts.len() as u32).pool_sizes(sizes);
+    // SAFETY: the device is valid by the contract of Context::new; the layouts are the passes'.
+    unsafe {
+        let pool = device.create_descriptor_pool(&info, None).call("vkCreateDescriptorPool")?;
+        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(layouts);
+        match device.allocate_descriptor_sets(&info).call("vkAllocateDescriptorSets") {
+            Ok(sets) => Ok((pool, sets)),
+            Err(error) => {
+                device.destroy_descriptor_pool(pool, None);
+                Err(error)
+            }
+        }
+    }
 }
 
 /// The least size of a buffer: a record of any kind of light.

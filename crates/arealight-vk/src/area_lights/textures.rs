@@ -1,8 +1,8 @@
 //! Light textures with their memory and descriptor sets.
 
-use super::place_of;
+use super::{descriptor_sets, place_of};
 use crate::context::Context;
-use crate::error::{Error, VulkanCall};
+use crate::error::Error;
 use crate::light_textures::{LightTextures, TextureUpdate};
 use crate::memory::{Memory, SharedAllocator};
 use crate::resource::Resource;
@@ -55,31 +55,9 @@ impl Textures {
             };
             let (sizes, layout) = (made.layers.level_pool_sizes(), made.layers.level_set_layout());
             let layouts = vec![layout; made.layers.level_sets() as usize];
-            (made.level_pool, made.level_sets) = made.sets(&sizes, &layouts)?;
+            (made.level_pool, made.level_sets) = descriptor_sets(context, &sizes, &layouts)?;
             made.layers.write_level_sets(&made.level_sets)?;
             Ok(made)
-        }
-    }
-
-    /// A pool, and all its sets.
-    fn sets(
-        &self,
-        sizes: &[vk::DescriptorPoolSize],
-        layouts: &[vk::DescriptorSetLayout],
-    ) -> Result<(vk::DescriptorPool, Vec<vk::DescriptorSet>), Error> {
-        let device = &self.context.device;
-        let info = vk::DescriptorPoolCreateInfo::default().max_sets(layouts.len() as u32).pool_sizes(sizes);
-        // SAFETY: the device is valid by the contract of Context::new; the layouts are the passes'.
-        unsafe {
-            let pool = device.create_descriptor_pool(&info, None).call("vkCreateDescriptorPool")?;
-            let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(layouts);
-            match device.allocate_descriptor_sets(&info).call("vkAllocateDescriptorSets") {
-                Ok(sets) => Ok((pool, sets)),
-                Err(error) => {
-                    device.destroy_descriptor_pool(pool, None);
-                    Err(error)
-                }
-            }
         }
     }
 
@@ -125,7 +103,8 @@ impl Textures {
             return Ok(());
         }
         let layouts = vec![self.layers.source_set_layout(); updates.len()];
-        let (pool, sets) = self.sets(&self.layers.source_pool_sizes(layouts.len() as u32), &layouts)?;
+        let (pool, sets) =
+            descriptor_sets(&self.context, &self.layers.source_pool_sizes(layouts.len() as u32), &layouts)?;
         self.source_pools[place] = pool;
         // SAFETY: the same contract.
         unsafe {
