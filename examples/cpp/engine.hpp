@@ -30,13 +30,11 @@ inline VKAPI_ATTR VkBool32 VKAPI_CALL count_message(VkDebugUtilsMessageSeverityF
 
 struct Buffer {
     VkBuffer handle;
-    VkDeviceMemory memory;
     void *mapped;
 };
 
 struct Image {
     VkImage handle;
-    VkDeviceMemory memory;
     VkImageView view;
 };
 
@@ -49,16 +47,17 @@ struct Engine {
     uint32_t family = 0;
     VkQueue queue = VK_NULL_HANDLE;
     VkPhysicalDeviceMemoryProperties memories = {};
+    // What was made lives as long as the device
+    std::vector<VkDeviceMemory> allocations;
+    std::vector<VkBuffer> buffers;
+    std::vector<Image> images;
     int messages = 0;
 
     explicit Engine(const std::string &validation) {
         make_instance(validation);
         choose_device();
         float priority = 1.0f;
-        VkDeviceQueueCreateInfo queues = {VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
-        queues.queueFamilyIndex = family;
-        queues.queueCount = 1;
-        queues.pQueuePriorities = &priority;
+        const VkDeviceQueueCreateInfo queues = {VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, family, 1, &priority};
         VkDeviceCreateInfo info = {VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO}; // no extension, no feature
         info.queueCreateInfoCount = 1;
         info.pQueueCreateInfos = &queues;
@@ -68,15 +67,13 @@ struct Engine {
     }
 
     void make_instance(const std::string &validation) {
-        VkApplicationInfo application = {VK_STRUCTURE_TYPE_APPLICATION_INFO};
-        application.apiVersion = VK_API_VERSION_1_1;
-        VkDebugUtilsMessengerCreateInfoEXT messages_info = {VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
-        messages_info.messageSeverity =
-            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-        messages_info.messageType =
-            VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
-        messages_info.pfnUserCallback = count_message;
-        messages_info.pUserData = &messages;
+        const VkApplicationInfo application = {VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, nullptr, 0, nullptr, 0,
+                                               VK_API_VERSION_1_1};
+        const VkDebugUtilsMessengerCreateInfoEXT messages_info = {
+            VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT, nullptr, 0,
+            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+            VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
+            count_message, &messages};
         std::vector<VkValidationFeatureEnableEXT> enabled;
         if (validation == "synchronization") {
             enabled = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
@@ -84,21 +81,14 @@ struct Engine {
             enabled = {VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT,
                        VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT};
         }
-        VkValidationFeaturesEXT features = {VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT};
-        features.pNext = &messages_info;
-        features.enabledValidationFeatureCount = (uint32_t)enabled.size();
-        features.pEnabledValidationFeatures = enabled.data();
+        const VkValidationFeaturesEXT features = {VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT, &messages_info,
+                                                  (uint32_t)enabled.size(), enabled.data(), 0, nullptr};
 
         const char *layer = "VK_LAYER_KHRONOS_validation";
         const char *extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
-        VkInstanceCreateInfo info = {VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
-        info.pApplicationInfo = &application;
+        VkInstanceCreateInfo info = {VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, nullptr, 0, &application};
         if (!validation.empty()) {
-            info.pNext = &features;
-            info.enabledLayerCount = 1;
-            info.ppEnabledLayerNames = &layer;
-            info.enabledExtensionCount = 1;
-            info.ppEnabledExtensionNames = &extension;
+            info = {VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, &features, 0, &application, 1, &layer, 1, &extension};
         }
         check(vkCreateInstance(&info, nullptr, &instance), "vkCreateInstance");
         if (!validation.empty()) {
@@ -155,11 +145,10 @@ struct Engine {
         for (uint32_t type = 0; type < memories.memoryTypeCount; type++) {
             bool has = (memories.memoryTypes[type].propertyFlags & wanted) == wanted;
             if ((type_bits >> type & 1) && has) {
-                VkMemoryAllocateInfo info = {VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
-                info.allocationSize = size;
-                info.memoryTypeIndex = type;
+                const VkMemoryAllocateInfo info = {VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, size, type};
                 VkDeviceMemory memory;
                 check(vkAllocateMemory(device, &info, nullptr, &memory), "vkAllocateMemory");
+                allocations.push_back(memory);
                 return memory;
             }
         }
@@ -168,17 +157,16 @@ struct Engine {
 
     // A buffer that the CPU writes and reads.
     Buffer buffer(uint64_t size, VkBufferUsageFlags usage, const void *content = nullptr) {
-        VkBufferCreateInfo info = {VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
-        info.size = size;
-        info.usage = usage;
+        const VkBufferCreateInfo info = {VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, nullptr, 0, size, usage};
         Buffer made = {};
         check(vkCreateBuffer(device, &info, nullptr, &made.handle), "vkCreateBuffer");
+        buffers.push_back(made.handle);
         VkMemoryRequirements needed;
         vkGetBufferMemoryRequirements(device, made.handle, &needed);
-        made.memory = allocate(needed.size, needed.memoryTypeBits,
-                               VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-        check(vkBindBufferMemory(device, made.handle, made.memory, 0), "vkBindBufferMemory");
-        check(vkMapMemory(device, made.memory, 0, VK_WHOLE_SIZE, 0, &made.mapped), "vkMapMemory");
+        VkDeviceMemory memory = allocate(needed.size, needed.memoryTypeBits,
+                                         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+        check(vkBindBufferMemory(device, made.handle, memory, 0), "vkBindBufferMemory");
+        check(vkMapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, &made.mapped), "vkMapMemory");
         if (content) {
             std::memcpy(made.mapped, content, size);
         }
@@ -186,42 +174,33 @@ struct Engine {
     }
 
     Image image(VkFormat format, VkImageUsageFlags usage) {
-        VkImageCreateInfo info = {VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
-        info.imageType = VK_IMAGE_TYPE_2D;
-        info.format = format;
-        info.extent = {WIDTH, HEIGHT, 1};
-        info.mipLevels = 1;
-        info.arrayLayers = 1;
-        info.samples = VK_SAMPLE_COUNT_1_BIT;
-        info.usage = usage;
+        const VkImageCreateInfo info = {VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO, nullptr, 0, VK_IMAGE_TYPE_2D, format,
+                                        {WIDTH, HEIGHT, 1}, 1, 1, VK_SAMPLE_COUNT_1_BIT, VK_IMAGE_TILING_OPTIMAL, usage};
         Image made = {};
         check(vkCreateImage(device, &info, nullptr, &made.handle), "vkCreateImage");
         VkMemoryRequirements needed;
         vkGetImageMemoryRequirements(device, made.handle, &needed);
-        made.memory = allocate(needed.size, needed.memoryTypeBits, 0);
-        check(vkBindImageMemory(device, made.handle, made.memory, 0), "vkBindImageMemory");
-        VkImageViewCreateInfo view = {VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
-        view.image = made.handle;
-        view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        view.format = format;
-        view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+        VkDeviceMemory memory = allocate(needed.size, needed.memoryTypeBits, 0);
+        check(vkBindImageMemory(device, made.handle, memory, 0), "vkBindImageMemory");
+        const VkImageViewCreateInfo view = {VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO, nullptr, 0, made.handle,
+                                            VK_IMAGE_VIEW_TYPE_2D, format, {}, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
         check(vkCreateImageView(device, &view, nullptr, &made.view), "vkCreateImageView");
+        images.push_back(made);
         return made;
     }
 
-    void destroy(const Buffer &buffer) {
-        vkDestroyBuffer(device, buffer.handle, nullptr);
-        vkFreeMemory(device, buffer.memory, nullptr);
-    }
-
-    void destroy(const Image &image) {
-        vkDestroyImageView(device, image.view, nullptr);
-        vkDestroyImage(device, image.handle, nullptr);
-        vkFreeMemory(device, image.memory, nullptr);
-    }
-
-    // Destroys the device, and returns how many messages of the validation layer there were.
+    // Destroys the device with what was made, and returns how many messages of the validation layer there were.
     int close() {
+        for (const Image &image : images) {
+            vkDestroyImageView(device, image.view, nullptr);
+            vkDestroyImage(device, image.handle, nullptr);
+        }
+        for (VkBuffer buffer : buffers) {
+            vkDestroyBuffer(device, buffer, nullptr);
+        }
+        for (VkDeviceMemory memory : allocations) {
+            vkFreeMemory(device, memory, nullptr);
+        }
         vkDestroyDevice(device, nullptr);
         if (messenger) {
             auto destroy_messenger = (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
@@ -235,20 +214,12 @@ struct Engine {
 
 inline void barrier(VkCommandBuffer commands, VkImage image, VkPipelineStageFlags before, VkAccessFlags written,
              VkImageLayout from, VkPipelineStageFlags after, VkAccessFlags next, VkImageLayout to) {
-    VkImageMemoryBarrier info = {VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
-    info.srcAccessMask = written;
-    info.dstAccessMask = next;
-    info.oldLayout = from;
-    info.newLayout = to;
-    info.srcQueueFamilyIndex = info.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    info.image = image;
-    info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    const VkImageMemoryBarrier info = {VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER, nullptr, written, next, from, to,
+                                       VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image,
+                                       {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
     vkCmdPipelineBarrier(commands, before, after, 0, 0, nullptr, 0, nullptr, 1, &info);
 }
 
 inline VkBufferImageCopy whole_image() {
-    VkBufferImageCopy copy = {};
-    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    copy.imageExtent = {WIDTH, HEIGHT, 1};
-    return copy;
+    return {0, 0, 0, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, {}, {WIDTH, HEIGHT, 1}};
 }

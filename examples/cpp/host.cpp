@@ -1,8 +1,9 @@
 // A small engine that embeds Arealight: its own device, memory, G-buffer and command buffer.
 //
-//     host PICTURE.pfm [--tiles] [--validate core|synchronization|gpu-assisted] [--mistake]
+//     host PICTURE.pfm [--recorder] [--tiles] [--validate core|synchronization|gpu-assisted] [--mistake]
 //
-// Renders a floor under four lights and writes its radiance; with --tiles, each tile of it with the lights that contribute to it. With
+// Renders a floor under four lights and writes its radiance: by what owns all that shading needs, or with --recorder by what is below it.
+// With --tiles, each tile is shaded with the lights that contribute to it. With
 // --validate it fails if the validation layer has a message; with --mistake it makes one, to show that this would be noticed.
 
 #include "engine.hpp"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <set>
 
 namespace {
 
@@ -89,12 +91,13 @@ ArealightLight sphere(const char *name, const std::array<double, 3> &center, dou
 }
 // doc end
 
-int render(const char *path, const std::string &validation, bool tiles, bool mistake) {
+int render(const char *path, const std::string &validation, const std::set<std::string> &options) {
+    const bool recorder = options.count("--recorder"), tiles = options.count("--tiles");
     Engine engine(validation);
     VkDevice device = engine.device;
 
-    // doc: create
-    // Once: Arealight on your device
+    // doc: host
+    // Your Vulkan
     ArealightHost host = {};
     host.abi_version = AREALIGHT_ABI_VERSION;
     host.api_version = VK_API_VERSION_1_1;
@@ -103,6 +106,17 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
     host.instance = engine.instance;
     host.physical_device = engine.physical_device;
     host.device = device;
+    // doc end
+    // doc: first
+    // Once: all zero is exact, for both lobes and every light
+    ArealightAreaLightsInfo info = {};
+    info.options.tile_capacity = tiles ? 128 : 0; // for many lights: lists of up to so many for each tile of 8 x 8 pixels
+    ArealightAreaLights *area_lights = nullptr;
+    check(arealight_area_lights_create(&host, &info, &area_lights));
+    // doc end
+
+    // doc: create
+    // Once: the recorder on your device
     Arealight *arealight = nullptr;
     check(arealight_create(&host, nullptr, &arealight));
 
@@ -112,15 +126,12 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
     VkDeviceMemory table_memory = engine.allocate(needed.size, needed.memory_type_bits, 0);
     Buffer table_staging = engine.buffer(needed.staging_size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
 
-    // A pass: of zeros it is exact, for both lobes and every light
-    ArealightPassOptions options = {};
-    options.tile_capacity = tiles ? 128 : 0; // for many lights: lists of up to so many for each tile of 8 x 8 pixels
     ArealightPass *pass = nullptr;
-    check(arealight_pass_create(arealight, &options, &pass));
+    check(arealight_pass_create(arealight, &info.options, &pass));
     // doc end
 
     // doc: lights
-    // When lights change: pack them relative to an origin near the camera, and upload
+    // In world positions; those of the G-buffer are relative to the camera
     const double camera[3] = {1000.0, 1.5, -2000.0};
     const double window[] = {994.0, 0.2, -2011.0, 998.0, 0.2, -2012.0, 998.0, 3.2, -2012.0, 994.0, 3.2, -2011.0};
     const double sign[] = {1003.0, 0.1, -2010.0, 1006.0, 0.1, -2008.0, 1004.5, 2.1, -2009.0};
@@ -131,6 +142,9 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
                                 polygon("arrow", arrow, 5, {0.5f, 5.0f, 1.0f}),
                                 sphere("lamp", {996.0, 0.5, -2007.0}, 0.3, {8.0f, 6.0f, 2.0f})};
     lights[1].two_sided = 1;
+    // doc end
+    // doc: pack
+    // When lights change: pack them relative to an origin near the camera, and upload
     ArealightPackedLights packed = {};
     check(arealight_pack_lights(lights, 4, camera, &packed)); // the sizes
     Buffer light_buffer = engine.buffer(packed.lights_size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
@@ -142,7 +156,6 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
     check(arealight_pack_lights(lights, 4, camera, &packed));
     // doc end
 
-    // doc: tiles
     // With tiles: where the horizons of the table's lobes are, once, and a buffer for the lists of each frame in flight
     Buffer lobe_horizons = {}, tile_lists = {};
     if (tiles) {
@@ -154,7 +167,6 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
         check(arealight_pass_tile_memory(pass, WIDTH, HEIGHT, &lists));
         tile_lists = engine.buffer(lists.size, lists.usage);
     }
-    // doc end
 
     // The engine's own G-buffer
     Surfaces surfaces;
@@ -170,8 +182,7 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
                                   VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
     Buffer readback = engine.buffer(float_bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
 
-    // doc: set
-    // A descriptor set from a pool of yours
+    // The recorder's descriptor set, from a pool of the engine's
     ArealightSetLayout layout;
     check(arealight_pass_set_layout(pass, &layout));
     const VkDescriptorPoolSize sizes[] = {
@@ -180,28 +191,19 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, layout.storage_images},
         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, layout.storage_buffers},
     };
-    VkDescriptorPoolCreateInfo pool_info = {VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-    pool_info.maxSets = 1;
-    pool_info.poolSizeCount = 4;
-    pool_info.pPoolSizes = sizes;
+    const VkDescriptorPoolCreateInfo pool_info = {VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, 1, 4, sizes};
     VkDescriptorPool pool;
     check(vkCreateDescriptorPool(device, &pool_info, nullptr, &pool), "vkCreateDescriptorPool");
     VkDescriptorSetLayout set_layout = (VkDescriptorSetLayout)layout.layout;
-    VkDescriptorSetAllocateInfo set_info = {VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
-    set_info.descriptorPool = pool;
-    set_info.descriptorSetCount = 1;
-    set_info.pSetLayouts = &set_layout;
+    const VkDescriptorSetAllocateInfo set_info = {VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, pool, 1, &set_layout};
     VkDescriptorSet set;
     check(vkAllocateDescriptorSets(device, &set_info, &set), "vkAllocateDescriptorSets");
-    // doc end
 
-    VkCommandPoolCreateInfo commands_info = {VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-    commands_info.queueFamilyIndex = engine.family;
+    const VkCommandPoolCreateInfo commands_info = {VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, 0, engine.family};
     VkCommandPool command_pool;
     check(vkCreateCommandPool(device, &commands_info, nullptr, &command_pool), "vkCreateCommandPool");
-    VkCommandBufferAllocateInfo allocate_info = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-    allocate_info.commandPool = command_pool;
-    allocate_info.commandBufferCount = 1;
+    const VkCommandBufferAllocateInfo allocate_info = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, command_pool,
+                                                       VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
     VkCommandBuffer commands;
     check(vkAllocateCommandBuffers(device, &allocate_info, &commands), "vkAllocateCommandBuffers");
     VkCommandBufferBeginInfo begin_info = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
@@ -227,68 +229,63 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
         vkCmdCopyBufferToImage(commands, staging[i].handle, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
         // With --mistake, the images are left in the wrong layout
-        if (!mistake) {
+        if (!options.count("--mistake")) {
             barrier(commands, image, copy, VK_ACCESS_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, compute,
                     VK_ACCESS_SHADER_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
         }
     }
-    // doc: record
-    // Each frame: point the set at your resources, and record between barriers of yours
+    barrier(commands, radiance.handle, start, 0, VK_IMAGE_LAYOUT_UNDEFINED, compute, VK_ACCESS_SHADER_WRITE_BIT,
+            VK_IMAGE_LAYOUT_GENERAL);
+    // doc: frame
+    // Each frame: its size and your images
+    ArealightFrame frame = {}; // frame.camera stays zero: the origin is the camera's position
+    frame.width = WIDTH;
+    frame.height = HEIGHT;
     ArealightResources resources = {};
-    resources.lights = {number(light_buffer.handle), 0, AREALIGHT_WHOLE_SIZE};
-    resources.light_vertices = {number(vertex_buffer.handle), 0, AREALIGHT_WHOLE_SIZE};
-    resources.shapes = {number(shape_buffer.handle), 0, AREALIGHT_WHOLE_SIZE};
     for (uint32_t plane = 0; plane < 3; plane++) { // AREALIGHT_PLANE_POSITION, _NORMAL, _BASE_COLOR
         resources.planes[plane] = {number(g_buffer[plane].view), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
     }
     resources.radiance = {number(radiance.view), VK_IMAGE_LAYOUT_GENERAL, 0};
+    if (!recorder) { // for the first place of those in flight
+        check(arealight_area_lights_shade(area_lights, commands, 0, lights, 4, camera, &frame, &resources));
+    }
+    // doc end
+    // doc: record
+    // Each frame: point the set at your buffers, too, and record between barriers of yours
+    resources.lights = {number(light_buffer.handle), 0, AREALIGHT_WHOLE_SIZE};
+    resources.light_vertices = {number(vertex_buffer.handle), 0, AREALIGHT_WHOLE_SIZE};
+    resources.shapes = {number(shape_buffer.handle), 0, AREALIGHT_WHOLE_SIZE};
     resources.lobe_horizons = {number(lobe_horizons.handle), 0, AREALIGHT_WHOLE_SIZE}; // these two with tiles alone
     resources.tile_lists = {number(tile_lists.handle), 0, AREALIGHT_WHOLE_SIZE};
     check(arealight_pass_write_set(pass, arealight, number(set), &resources));
-
-    barrier(commands, radiance.handle, start, 0, VK_IMAGE_LAYOUT_UNDEFINED, compute, VK_ACCESS_SHADER_WRITE_BIT,
-            VK_IMAGE_LAYOUT_GENERAL);
-    ArealightFrame frame = {};
-    frame.width = WIDTH;
-    frame.height = HEIGHT;
-    frame.lights = packed.summary; // frame.camera stays zero: the origin is the camera's position
+    frame.lights = packed.summary;
     frame.tile_lists = resources.tile_lists;
-    check(arealight_pass_record(pass, commands, number(set), &frame));
+    if (recorder) {
+        check(arealight_pass_record(pass, commands, number(set), &frame));
+    }
+    // doc end
     barrier(commands, radiance.handle, compute, VK_ACCESS_SHADER_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL, copy,
             VK_ACCESS_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    // doc end
-
     vkCmdCopyImageToBuffer(commands, radiance.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, readback.handle, 1,
                            &region);
-    VkMemoryBarrier to_host = {VK_STRUCTURE_TYPE_MEMORY_BARRIER};
-    to_host.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
-    to_host.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
+    const VkMemoryBarrier to_host = {VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_TRANSFER_WRITE_BIT,
+                                     VK_ACCESS_HOST_READ_BIT};
     vkCmdPipelineBarrier(commands, copy, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &to_host, 0, nullptr, 0, nullptr);
     check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
 
-    VkSubmitInfo submit = {VK_STRUCTURE_TYPE_SUBMIT_INFO};
-    submit.commandBufferCount = 1;
-    submit.pCommandBuffers = &commands;
+    const VkSubmitInfo submit = {VK_STRUCTURE_TYPE_SUBMIT_INFO, nullptr, 0, nullptr, nullptr, 1, &commands, 0, nullptr};
     check(vkQueueSubmit(engine.queue, 1, &submit, VK_NULL_HANDLE), "vkQueueSubmit");
     check(vkQueueWaitIdle(engine.queue), "vkQueueWaitIdle");
     write_picture(path, (const float *)readback.mapped);
 
-    // doc: destroy
-    // When no commands are pending, in any order
+    // doc: last
+    // When no commands are pending
+    check(arealight_area_lights_destroy(area_lights));
+    // doc end
     check(arealight_pass_destroy(pass));
     check(arealight_destroy(arealight));
-    // doc end
-    vkFreeMemory(device, table_memory, nullptr);
     vkDestroyCommandPool(device, command_pool, nullptr);
     vkDestroyDescriptorPool(device, pool, nullptr);
-    for (int i = 0; i < 3; i++) {
-        engine.destroy(g_buffer[i]);
-        engine.destroy(staging[i]);
-    }
-    engine.destroy(radiance);
-    for (const Buffer &buffer : {readback, light_buffer, vertex_buffer, shape_buffer, table_staging, lobe_horizons, tile_lists}) {
-        engine.destroy(buffer);
-    }
     return engine.close();
 }
 
@@ -296,26 +293,23 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
 
 int main(int argc, char **argv) {
     std::string path, validation;
-    bool tiles = false, mistake = false;
+    std::set<std::string> options;
     for (int i = 1; i < argc; i++) {
         std::string argument = argv[i];
         if (argument == "--validate" && i + 1 < argc) {
             validation = argv[++i];
-        } else if (argument == "--tiles") {
-            tiles = true;
-        } else if (argument == "--mistake") {
-            mistake = true;
+        } else if (argument.compare(0, 2, "--") == 0) {
+            options.insert(argument);
         } else {
             path = argument;
         }
     }
     if (path.empty()) {
-        std::fprintf(stderr, "usage: %s PICTURE.pfm [--tiles] [--validate core|synchronization|gpu-assisted] [--mistake]\n",
-                     argv[0]);
+        std::fprintf(stderr, "usage: %s PICTURE.pfm, and what examples/cpp/host.cpp begins with\n", argv[0]);
         return 2;
     }
     try {
-        int messages = render(path.c_str(), validation, tiles, mistake);
+        int messages = render(path.c_str(), validation, options);
         if (messages > 0) {
             std::fprintf(stderr, "error: the validation layer has %d messages\n", messages);
             return 1;

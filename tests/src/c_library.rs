@@ -11,13 +11,14 @@ use glam::{Vec3, Vec4};
 use prelude::*;
 use std::cell::Cell;
 use std::ffi::{CStr, c_char, c_void};
+use std::mem::transmute;
 use std::ptr::{null, null_mut};
 
 /// The C interface, all of whose names say that they are of it, and what most of its tests name.
 pub mod prelude {
     pub use super::{
-        CLibrary, CLightBuffers, DeviceMemory, NO_ARRAYS, NO_FRAME, NO_LIGHT, c_image, c_lamp, good, no_host,
-        refused, set_layout, whole,
+        CLibrary, CLightBuffers, DeviceMemory, NO_ARRAYS, NO_FRAME, NO_INFO, NO_LIGHT, c_image, c_lamp,
+        c_planes, good, no_host, refused, set_layout, whole,
     };
     pub use arealight_capi::*;
     pub use std::ffi::c_void;
@@ -78,6 +79,17 @@ pub fn c_image(image: &Image, usage: Usage) -> ArealightImage {
     ArealightImage { view: image.view().as_raw(), layout: usage.layout.as_raw().cast_unsigned(), reserved: 0 }
 }
 
+/// The planes of a pixel as C has them.
+pub fn c_planes(pixel: &OnePixel<'_>) -> [ArealightImage; Plane::COUNT] {
+    let planes = pixel.planes();
+    Plane::ALL.map(|plane| match planes[plane] {
+        Some(Resource::SampledImage { view, layout }) => {
+            ArealightImage { view: view.as_raw(), layout: layout.as_raw().cast_unsigned(), reserved: 0 }
+        }
+        _ => ArealightImage::default(),
+    })
+}
+
 /// All of a buffer as C has it.
 pub fn whole(buffer: &Buffer) -> ArealightBuffer {
     ArealightBuffer { buffer: buffer.handle().as_raw(), offset: 0, range: AREALIGHT_WHOLE_SIZE }
@@ -86,6 +98,10 @@ pub fn whole(buffer: &Buffer) -> ArealightBuffer {
 /// A frame of no pixels and no light.
 // SAFETY: numbers and pointers alone.
 pub const NO_FRAME: ArealightFrame = unsafe { std::mem::zeroed() };
+
+/// Both lobes at the exact level, for two frames in flight.
+// SAFETY: as above.
+pub const NO_INFO: ArealightAreaLightsInfo = unsafe { std::mem::zeroed() };
 
 /// To ask for the sizes alone.
 // SAFETY: as above.
@@ -132,10 +148,16 @@ pub struct CLibrary<'a> {
     engine: &'a TestEngine,
     /// Keeps the loader, whose functions the library has.
     _entry: ash::Entry,
+    /// The device.
+    pub host: ArealightHost,
     /// Null is not destroyed.
     pub arealight: *mut Arealight,
     /// Whether frames are recorded by what is pushed, of passes that are made so.
     pub is_pushed: Cell<bool>,
+    /// What shades instead, if it is not null, and its next place.
+    owner: Cell<(*mut ArealightAreaLights, u32)>,
+    /// The table's, once it was uploaded.
+    memory: Cell<Option<DeviceMemory>>,
 }
 
 impl<'a> CLibrary<'a> {
@@ -147,16 +169,14 @@ impl<'a> CLibrary<'a> {
         let (find_instance, find_device) =
             (entry.static_fn().get_instance_proc_addr, host.instance().fp_v1_0().get_device_proc_addr);
         // SAFETY: both sides are functions of C that take a handle, which is a pointer, and a string.
-        let info = unsafe {
+        let host = unsafe {
             ArealightHost {
-                get_instance_proc_addr: Some(std::mem::transmute::<
-                    vk::PFN_vkGetInstanceProcAddr,
-                    unsafe extern "system" fn(*mut c_void, *const c_char) -> ArealightFunction,
-                >(find_instance)),
-                get_device_proc_addr: Some(std::mem::transmute::<
-                    vk::PFN_vkGetDeviceProcAddr,
-                    unsafe extern "system" fn(*mut c_void, *const c_char) -> ArealightFunction,
-                >(find_device)),
+                get_instance_proc_addr: transmute::<vk::PFN_vkGetInstanceProcAddr, ArealightProcAddr>(
+                    find_instance,
+                ),
+                get_device_proc_addr: transmute::<vk::PFN_vkGetDeviceProcAddr, ArealightProcAddr>(
+                    find_device,
+                ),
                 instance: host.instance().handle().as_raw() as *mut c_void,
                 physical_device: host.physical_device().as_raw() as *mut c_void,
                 device: host.device().handle().as_raw() as *mut c_void,
@@ -165,8 +185,32 @@ impl<'a> CLibrary<'a> {
         };
         let mut arealight = null_mut();
         // SAFETY: the handles are the engine's, which outlives the library's object.
-        good(unsafe { arealight_create(&raw const info, null(), &raw mut arealight) });
-        Self { engine, _entry: entry, arealight, is_pushed: Cell::new(false) }
+        good(unsafe { arealight_create(&raw const host, null(), &raw mut arealight) });
+        let (is_pushed, owner, memory) = (Cell::default(), Cell::new((null_mut(), 0)), Cell::default());
+        Self { engine, _entry: entry, host, arealight, is_pushed, owner, memory }
+    }
+
+    /// With its table.
+    pub fn with_table(engine: &'a TestEngine) -> Self {
+        let made = Self::new(engine);
+        made.upload(DeviceMemory::new(engine, &made.table_memory()));
+        made
+    }
+
+    /// Does something while what owns all that shading needs shades, at one place and the other.
+    pub fn with_area_lights(
+        &self,
+        info: &ArealightAreaLightsInfo,
+        act: impl FnOnce(*mut ArealightAreaLights),
+    ) {
+        let mut owner = null_mut();
+        // SAFETY: the handles are the engine's, and submissions are waited for.
+        good(unsafe { arealight_area_lights_create(&raw const self.host, info, &raw mut owner) });
+        self.owner.set((owner, 0));
+        act(owner);
+        self.owner.set((null_mut(), 0));
+        // SAFETY: as above.
+        good(unsafe { arealight_area_lights_destroy(owner) });
     }
 
     /// A pass for surfaces.
@@ -184,8 +228,7 @@ impl<'a> CLibrary<'a> {
 
     /// What memory the table needs.
     pub fn table_memory(&self) -> ArealightMemory {
-        let mut memory =
-            ArealightMemory { size: 0, alignment: 0, staging_size: 0, memory_type_bits: 0, reserved: 0 };
+        let mut memory = ArealightMemory::default();
         // SAFETY: the pointer is valid.
         good(unsafe { arealight_table_memory(self.arealight, &raw mut memory) });
         memory
@@ -217,12 +260,12 @@ impl<'a> CLibrary<'a> {
         result
     }
 
-    /// Uploads the table.
-    pub fn upload(&self, memory: &DeviceMemory) {
-        let host = self.engine.host();
+    /// Uploads the table to memory that it keeps.
+    pub fn upload(&self, memory: DeviceMemory) {
         let staging = self.staging();
-        host.submit(|commands| good(self.record_upload(memory.raw, &staging, commands)))
-            .expect("a submission");
+        let record = |commands| good(self.record_upload(memory.raw, &staging, commands));
+        self.engine.host().submit(record).expect("a submission");
+        self.memory.set(Some(memory));
     }
 
     /// A buffer for the table's texels.
@@ -262,15 +305,8 @@ impl<'a> CLibrary<'a> {
         let packed = CLightBuffers::new(self.engine, lights);
         let format = RadianceFormat::Rgba32Float;
         let radiance = one_pixel::stored(self.engine, format);
-        let planes = pixel.planes();
-        let plane = |plane: Plane| match planes[plane] {
-            Some(Resource::SampledImage { view, layout }) => {
-                ArealightImage { view: view.as_raw(), layout: layout.as_raw().cast_unsigned(), reserved: 0 }
-            }
-            _ => ArealightImage::default(),
-        };
         let resources = ArealightResources {
-            planes: Plane::ALL.map(plane),
+            planes: c_planes(pixel),
             light_textures,
             radiance: c_image(&radiance, Usage::COMPUTE_WRITE),
             ..packed.resources()
@@ -282,16 +318,34 @@ impl<'a> CLibrary<'a> {
             lights: packed.summary,
             ..NO_FRAME
         };
-        self.submit(pass, &resources, &frame);
+        self.submit(pass, lights, &resources, &frame);
         one_pixel::read(&radiance, format)
     }
 
-    /// Records a frame with a new set, or with what is pushed, and waits for it.
-    fn submit(&self, pass: *mut ArealightPass, resources: &ArealightResources, frame: &ArealightFrame) {
-        let (arealight, host) = (self.arealight, self.engine.host());
+    /// Records a frame by what owns all that shading needs, where there is one, by what is pushed, or with a
+    /// new set, and waits for it.
+    #[expect(clippy::not_unsafe_ptr_arg_deref, reason = "the library refuses a pass that is none")]
+    pub fn submit(
+        &self,
+        pass: *mut ArealightPass,
+        lights: &[ArealightLight],
+        resources: &ArealightResources,
+        frame: &ArealightFrame,
+    ) {
+        let (arealight, host, (owner, place)) = (self.arealight, self.engine.host(), self.owner.get());
         let raw = |commands: vk::CommandBuffer| commands.as_raw() as *mut c_void;
-        let recorded = if self.is_pushed.get() {
+        let recorded = if !owner.is_null() {
+            let (first, count, origin) = (lights.as_ptr(), lights.len() as u32, [0.0_f64; 3].as_ptr());
+            self.owner.set((owner, 1 - place));
             // SAFETY: the commands are being recorded, and what they use lives until they were waited for.
+            host.submit(|commands| unsafe {
+                let commands = raw(commands);
+                good(arealight_area_lights_shade(
+                    owner, commands, place, first, count, origin, frame, resources,
+                ));
+            })
+        } else if self.is_pushed.get() {
+            // SAFETY: as above.
             host.submit(|commands| unsafe {
                 good(arealight_pass_record_pushed(pass, arealight, raw(commands), resources, frame));
             })

@@ -2,16 +2,18 @@
 //
 // Made from crates/arealight-capi by `cargo run -p xtask -- header`: change it there.
 //
-// The library owns nothing of yours: it never submits, waits, or allocates memory or descriptor sets of Vulkan, and makes no
-// barrier for your images. vulkan.h is not needed: handles that are pointers everywhere (VkInstance, VkPhysicalDevice,
-// VkDevice, VkCommandBuffer) are void *, all others uint64_t.
+// An ArealightAreaLights owns all that shading needs: create it, shade in each frame, destroy it. All else is the recorder
+// below it, which allocates no memory or descriptor sets of Vulkan. Neither submits, waits, or makes a barrier for your
+// images. vulkan.h is not needed: handles that are pointers everywhere (VkInstance, VkPhysicalDevice, VkDevice,
+// VkCommandBuffer) are void *, all others uint64_t.
 //
 // Conventions: SI radiometry, linear Rec. 709. Right-handed; matrices are column-major. Positions are relative to an
 // origin near the camera that you choose; lights are packed with the same. A light's front is where its vertices run
 // counter-clockwise.
 //
-// Every function that returns an ArealightResult checks what it can, records nothing where it fails, writes nothing but the sizes that are
-// needed and a null handle, and leaves a message for arealight_last_error.
+// Every function that returns an ArealightResult checks what it can, records nothing where it fails (but
+// arealight_area_lights_shade), writes nothing but the sizes that are needed and a null handle, and leaves a message for
+// arealight_last_error.
 //
 // Threads: functions that take an object as const may be called for it by several at once, each with command buffers, sets and
 // arrays of its own; all others, and arealight_..._destroy, by one while no other uses the object. Objects are independent.
@@ -331,6 +333,10 @@ typedef enum ArealightResult {
 // The library on a device of the host, with a light table.
 typedef struct Arealight Arealight;
 
+// The passes of one view with all that they need: table, buffers of lights, descriptor sets, lists of tiles,
+// what shadows take, and memory, in blocks of 4 MiB or more. A host that makes none has only its code.
+typedef struct ArealightAreaLights ArealightAreaLights;
+
 // Triangles that block shadow rays, in a hierarchy of boxes, for hosts that have none of their own.
 typedef struct ArealightBlockers ArealightBlockers;
 
@@ -372,6 +378,82 @@ typedef struct ArealightHost {
     uint64_t pipeline_cache;
 } ArealightHost;
 
+// SPIR-V that the host compiled from the sources of `arealight export`. All zero is the library's own.
+//
+// It is valid SPIR-V of this version's kernel; the layout lives as long as the pass that is made of it.
+typedef struct ArealightModule {
+    // The words.
+    const uint32_t *words;
+    // Their bytes.
+    size_t size;
+    // VkDescriptorSetLayout of set 1, with what the host's own answers read. Else 0.
+    uint64_t host_set_layout;
+} ArealightModule;
+
+// Options fixed when a pass is created. All zero is both lobes at the exact level.
+typedef struct ArealightPassOptions {
+    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL,
+    // _COAT_BY_ALBEDO, _SHEEN, _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO,
+    // _MULTIPLE_SCATTERING, _TRANSMISSION and _THIN_FILM. 0 is DIFFUSE and GLOSSY. What lights need is known
+    // from ArealightFrame.lights.
+    uint32_t surfaces;
+    // One of AREALIGHT_FORM_FACTOR_*.
+    uint32_t form_factor;
+    // One of AREALIGHT_HORIZON_*.
+    uint32_t horizon;
+    // One of AREALIGHT_SPECULAR_LOBES_*.
+    uint32_t specular_lobes;
+    // One of AREALIGHT_LOBES_*.
+    uint32_t lobes;
+    // One of AREALIGHT_FOOTPRINT_*.
+    uint32_t footprint;
+    // One of AREALIGHT_POSITION_*.
+    uint32_t position;
+    // One of AREALIGHT_OUTPUT_*.
+    uint32_t output;
+    // One of AREALIGHT_IMAGES_*.
+    uint32_t radiance_images;
+    // One of AREALIGHT_RADIANCE_*.
+    uint32_t radiance_format;
+    // One of AREALIGHT_G_BUFFER_*.
+    uint32_t g_buffer;
+    // 0: a pass without tiles. Else the most lights, of all kinds, that the list of a tile of 8 x 8 pixels
+    // holds, such as 128; a tile that more lights contribute to is shaded by all.
+    uint32_t tile_capacity;
+    // With tiles: lights are culled from a tile that together contribute less than this fraction of what its
+    // other lights do, to the radiance of each of its pixels, in the sum of the channels; in [0, 1). 0: only
+    // those that contribute nothing.
+    float tile_cull_threshold;
+    // With tiles: frames of fewer lights, all of them convex quads without a texture, are shaded without,
+    // which takes less time; such as 4.
+    uint32_t tile_least_quads;
+    // How many shadow rays a pixel has, at most 4: the pass picks a light and a lobe for each, for an
+    // ArealightShadowPass. 0: no shadows.
+    uint32_t shadow_rays;
+    // One of AREALIGHT_CAMERA_*.
+    uint32_t camera;
+    // 1: frames are rectangles of larger images, each from ArealightFrame.offset on, such as views side by
+    // side; without shadow rays. Else 0.
+    uint32_t rectangle;
+    // How many texels of the G-buffer a pixel of radiance has to a side, at most 16; of them the first is
+    // shaded: 2 is half resolution. Not with shadow rays. 0 is 1.
+    uint32_t texels_per_pixel;
+    // How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. Radiance
+    // is the mean over them. Not with shadow rays or half resolution. 0 is 1.
+    uint32_t samples;
+    // 1: frames have a stencil test, by AREALIGHT_PLANE_STENCIL; pixels that fail it stay as they are;
+    // without shadow rays. Else 0.
+    uint32_t stencil;
+    // 1: how many lights a frame has is read from ArealightResources.light_counts when the commands run;
+    // ArealightFrame.lights says the most. Else 0.
+    uint32_t light_counts;
+    // One of AREALIGHT_DESCRIPTORS_*.
+    uint32_t descriptors;
+    // `shade.comp` for a G-buffer of the host's: `g_buffer` does not count then, and tiles cannot be had.
+    // Images that it does not declare may be any in ArealightResources.
+    struct ArealightModule module;
+} ArealightPassOptions;
+
 // Which light table.
 typedef struct ArealightTable {
     // A file in OpenEXR, KTX2 or DDS, as `arealight fit` and `arealight table convert` write them; null for
@@ -385,33 +467,17 @@ typedef struct ArealightTable {
     uint32_t reserved;
 } ArealightTable;
 
-// What memory an image of the library's needs.
-typedef struct ArealightMemory {
-    // VkMemoryRequirements of the image.
-    uint64_t size;
-    // VkMemoryRequirements of the image.
-    uint64_t alignment;
-    // Of the table: bytes of the staging buffer, VK_BUFFER_USAGE_TRANSFER_SRC_BIT. Of light textures 0.
-    uint64_t staging_size;
-    // VkMemoryRequirements of the image.
-    uint32_t memory_type_bits;
-    // 0
-    uint32_t reserved;
-} ArealightMemory;
-
-// How the table gets to the device.
-typedef struct ArealightUpload {
-    // The staging buffer's memory at staging_offset, mapped; the texels are written there.
-    void *staging_data;
-    // Bytes from there on: ArealightMemory.staging_size or more.
-    uint64_t staging_size;
-    // VkBuffer; it lives until the commands have run.
-    uint64_t staging_buffer;
-    // Where in it, a multiple of 16.
-    uint64_t staging_offset;
-    // VkCommandBuffer that is being recorded, outside a render pass, on a queue with graphics or compute.
-    void *command_buffer;
-} ArealightUpload;
+// What arealight_area_lights_create makes. All zero is both lobes at the exact level, two frames in flight.
+typedef struct ArealightAreaLightsInfo {
+    // How surfaces are stored and shaded; `descriptors` and `module` are 0.
+    struct ArealightPassOptions options;
+    // As of arealight_create.
+    const struct ArealightTable *table;
+    // How many frames may be recorded that are not done yet, at most 8. 0 is 2.
+    uint32_t frames_in_flight;
+    // With shadow rays, one of AREALIGHT_SHADOW_FILTER_*.
+    uint32_t shadow_filter;
+} ArealightAreaLightsInfo;
 
 // A light of constant radiance, or a textured one, in world positions. Which fields are read depends on its
 // kind.
@@ -503,149 +569,6 @@ typedef struct ArealightLightSummary {
     uint32_t effects;
 } ArealightLightSummary;
 
-// Arrays of the host for packed lights, as the buffers of ArealightResources hold them; aligned to 4 bytes,
-// null to ask for the sizes alone.
-typedef struct ArealightPackedLights {
-    // Where polygons and meshes go.
-    void *lights;
-    // Where their vertices go.
-    void *vertices;
-    // Where disks, spheres and tubes go.
-    void *shapes;
-    // In: bytes at `lights`. Out: bytes that are needed, 64 a light.
-    uint64_t lights_size;
-    // In: bytes at `vertices`. Out: bytes that are needed, 16 a vertex.
-    uint64_t vertices_size;
-    // In: bytes at `shapes`. Out: bytes that are needed, 64 a light.
-    uint64_t shapes_size;
-    // Out: for ArealightFrame.lights.
-    struct ArealightLightSummary summary;
-} ArealightPackedLights;
-
-// How far a light is of any matter: arealight_light_reach.
-typedef struct ArealightReach {
-    // The light's middle, in world positions.
-    double center[3];
-    // How far from there it may reflect more than the threshold; infinite where nothing bounds it.
-    double radius;
-    // The lower corner of a box with the same bound: smaller for flat one-sided lights.
-    double low[3];
-    // The upper corner.
-    double high[3];
-} ArealightReach;
-
-// SPIR-V that the host compiled from the sources of `arealight export`. All zero is the library's own.
-//
-// It is valid SPIR-V of this version's kernel; the layout lives as long as the pass that is made of it.
-typedef struct ArealightModule {
-    // The words.
-    const uint32_t *words;
-    // Their bytes.
-    size_t size;
-    // VkDescriptorSetLayout of set 1, with what the host's own answers read. Else 0.
-    uint64_t host_set_layout;
-} ArealightModule;
-
-// Options fixed when a pass is created. All zero is both lobes at the exact level.
-typedef struct ArealightPassOptions {
-    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL,
-    // _COAT_BY_ALBEDO, _SHEEN, _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO,
-    // _MULTIPLE_SCATTERING, _TRANSMISSION and _THIN_FILM. 0 is DIFFUSE and GLOSSY. What lights need is known
-    // from ArealightFrame.lights.
-    uint32_t surfaces;
-    // One of AREALIGHT_FORM_FACTOR_*.
-    uint32_t form_factor;
-    // One of AREALIGHT_HORIZON_*.
-    uint32_t horizon;
-    // One of AREALIGHT_SPECULAR_LOBES_*.
-    uint32_t specular_lobes;
-    // One of AREALIGHT_LOBES_*.
-    uint32_t lobes;
-    // One of AREALIGHT_FOOTPRINT_*.
-    uint32_t footprint;
-    // One of AREALIGHT_POSITION_*.
-    uint32_t position;
-    // One of AREALIGHT_OUTPUT_*.
-    uint32_t output;
-    // One of AREALIGHT_IMAGES_*.
-    uint32_t radiance_images;
-    // One of AREALIGHT_RADIANCE_*.
-    uint32_t radiance_format;
-    // One of AREALIGHT_G_BUFFER_*.
-    uint32_t g_buffer;
-    // 0: a pass without tiles. Else the most lights, of all kinds, that the list of a tile of 8 x 8 pixels
-    // holds, such as 128; a tile that more lights contribute to is shaded by all.
-    uint32_t tile_capacity;
-    // With tiles: lights are culled from a tile that together contribute less than this fraction of what its
-    // other lights do, to the radiance of each of its pixels, in the sum of the channels; in [0, 1). 0: only
-    // those that contribute nothing.
-    float tile_cull_threshold;
-    // With tiles: frames of fewer lights, all of them convex quads without a texture, are shaded without,
-    // which takes less time; such as 4.
-    uint32_t tile_least_quads;
-    // How many shadow rays a pixel has, at most 4: the pass picks a light and a lobe for each, for an
-    // ArealightShadowPass. 0: no shadows.
-    uint32_t shadow_rays;
-    // One of AREALIGHT_CAMERA_*.
-    uint32_t camera;
-    // 1: frames are rectangles of larger images, each from ArealightFrame.offset on, such as views side by
-    // side; without shadow rays. Else 0.
-    uint32_t rectangle;
-    // How many texels of the G-buffer a pixel of radiance has to a side, at most 16; of them the first is
-    // shaded: 2 is half resolution. Not with shadow rays. 0 is 1.
-    uint32_t texels_per_pixel;
-    // How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. Radiance
-    // is the mean over them. Not with shadow rays or half resolution. 0 is 1.
-    uint32_t samples;
-    // 1: frames have a stencil test, by AREALIGHT_PLANE_STENCIL; pixels that fail it stay as they are;
-    // without shadow rays. Else 0.
-    uint32_t stencil;
-    // 1: how many lights a frame has is read from ArealightResources.light_counts when the commands run;
-    // ArealightFrame.lights says the most. Else 0.
-    uint32_t light_counts;
-    // One of AREALIGHT_DESCRIPTORS_*.
-    uint32_t descriptors;
-    // `shade.comp` for a G-buffer of the host's: `g_buffer` does not count then, and tiles cannot be had.
-    // Images that it does not declare may be any in ArealightResources.
-    struct ArealightModule module;
-} ArealightPassOptions;
-
-// Options of a medium's pass. All zero: at the middle of each froxel, without shadow rays.
-typedef struct ArealightMediumOptions {
-    // 1: each sample has a ray over each light; 2: one ray alone, over a light that is drawn by how much of
-    // it is scattered there. 0: none.
-    uint32_t shadow_rays;
-    // At how many points of a froxel light is scattered, each with rays of its own. 0 is 1.
-    uint32_t samples;
-    // 1: scattering and extinction are read from ArealightMediumResources.medium. Else 0.
-    uint32_t by_image;
-    // 1: a froxel's distance is drawn within it, by ArealightMediumFrame.seed. Else 0.
-    uint32_t jitter;
-    // 1: froxels that surfaces hide from every pixel are filled, too. 0: they hold nothing, and positions
-    // are of the picture's size.
-    uint32_t fill_hidden;
-    // `medium_scatter.comp` of the host's, as ArealightShadowOptions.module.
-    struct ArealightModule module;
-} ArealightMediumOptions;
-
-// The resources of a descriptor set.
-typedef struct ArealightSetLayout {
-    // VkDescriptorSetLayout, the library's own.
-    uint64_t layout;
-    // Descriptors that a set takes from its pool: VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE.
-    uint32_t sampled_images;
-    // VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
-    uint32_t combined_image_samplers;
-    // VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
-    uint32_t storage_images;
-    // VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
-    uint32_t storage_buffers;
-    // VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC
-    uint32_t dynamic_storage_buffers;
-    // 0
-    uint32_t reserved;
-} ArealightSetLayout;
-
 // A range of a buffer of the host, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT.
 typedef struct ArealightBuffer {
     // VkBuffer
@@ -655,61 +578,6 @@ typedef struct ArealightBuffer {
     // Bytes, or AREALIGHT_WHOLE_SIZE.
     uint64_t range;
 } ArealightBuffer;
-
-// An image of the host, in the layout that it has when the pass runs.
-typedef struct ArealightImage {
-    // VkImageView
-    uint64_t view;
-    // VkImageLayout
-    uint32_t layout;
-    // 0
-    uint32_t reserved;
-} ArealightImage;
-
-// The host's resources of a pass. The host's barriers make them visible to the compute stage; layouts are
-// left as they are.
-typedef struct ArealightResources {
-    // ArealightPackedLights.lights; without lights, any buffer of 64 bytes or more.
-    struct ArealightBuffer lights;
-    // ArealightPackedLights.vertices; without lights, any buffer of 64 bytes or more.
-    struct ArealightBuffer light_vertices;
-    // ArealightPackedLights.shapes. May be 0 where no frame has disks, spheres or tubes.
-    struct ArealightBuffer shapes;
-    // The G-buffer, by AREALIGHT_PLANE_*. What a pass does not read may be 0.
-    struct ArealightImage planes[AREALIGHT_PLANE_COUNT];
-    // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that
-    // `arealight export` describes. May be 0 where no frame has textured lights.
-    struct ArealightImage light_textures;
-    // Where radiance goes: a storage image of ArealightPassOptions.radiance_format in
-    // VK_IMAGE_LAYOUT_GENERAL.
-    struct ArealightImage radiance;
-    // Where the glossy lobe's goes with AREALIGHT_IMAGES_SEPARATE: another such image. Else 0.
-    struct ArealightImage glossy;
-    // What arealight_lobe_horizons wrote. Without tiles 0.
-    struct ArealightBuffer lobe_horizons;
-    // What arealight_pass_tile_memory asks for: frames that run at the same time need one each. Without
-    // tiles 0.
-    struct ArealightBuffer tile_lists;
-    // Of arealight_pass_shadow_picks_size bytes. Without shadow rays 0.
-    struct ArealightBuffer shadow_picks;
-    // Three numbers of 32 bits: how many lights, how many shapes, and how many of the first lights are
-    // convex quads without a texture. Without ArealightPassOptions.light_counts 0.
-    struct ArealightBuffer light_counts;
-} ArealightResources;
-
-// The host's resources of a medium's pass beyond those of its shade pass.
-typedef struct ArealightMediumResources {
-    // A 3D storage image (rgba16f) of ArealightMediumFrame.froxels, in VK_IMAGE_LAYOUT_GENERAL. The pass
-    // alone writes it: radiance up to a froxel's far side, in a the part that is let through.
-    struct ArealightImage froxels;
-    // With ArealightMediumOptions.by_image a 3D image of that size: per unit of length scattering in rgb,
-    // extinction in a. Else 0.
-    struct ArealightImage medium;
-    // With shadow rays ArealightBlockerArrays.nodes. 0 with a module of the host's.
-    struct ArealightBuffer blocker_nodes;
-    // ArealightBlockerArrays.triangles; without triangles, any buffer. 0 with a module of the host's.
-    struct ArealightBuffer blocker_triangles;
-} ArealightMediumResources;
 
 // The rectangle of a G-buffer's texels that clip space was drawn to: VkViewport.
 typedef struct ArealightViewport {
@@ -765,6 +633,156 @@ typedef struct ArealightFrame {
     // bytes after what the set was written with. Else 0.
     uint32_t light_offsets[3];
 } ArealightFrame;
+
+// An image of the host, in the layout that it has when the pass runs.
+typedef struct ArealightImage {
+    // VkImageView
+    uint64_t view;
+    // VkImageLayout
+    uint32_t layout;
+    // 0
+    uint32_t reserved;
+} ArealightImage;
+
+// The host's resources of a pass. The host's barriers make them visible to the compute stage; layouts are
+// left as they are.
+typedef struct ArealightResources {
+    // ArealightPackedLights.lights; without lights, any buffer of 64 bytes or more.
+    struct ArealightBuffer lights;
+    // ArealightPackedLights.vertices; without lights, any buffer of 64 bytes or more.
+    struct ArealightBuffer light_vertices;
+    // ArealightPackedLights.shapes. May be 0 where no frame has disks, spheres or tubes.
+    struct ArealightBuffer shapes;
+    // The G-buffer, by AREALIGHT_PLANE_*. What a pass does not read may be 0.
+    struct ArealightImage planes[AREALIGHT_PLANE_COUNT];
+    // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that
+    // `arealight export` describes. May be 0 where no frame has textured lights.
+    struct ArealightImage light_textures;
+    // Where radiance goes: a storage image of ArealightPassOptions.radiance_format in
+    // VK_IMAGE_LAYOUT_GENERAL.
+    struct ArealightImage radiance;
+    // Where the glossy lobe's goes with AREALIGHT_IMAGES_SEPARATE: another such image. Else 0.
+    struct ArealightImage glossy;
+    // What arealight_lobe_horizons wrote. Without tiles 0.
+    struct ArealightBuffer lobe_horizons;
+    // What arealight_pass_tile_memory asks for: frames that run at the same time need one each. Without
+    // tiles 0.
+    struct ArealightBuffer tile_lists;
+    // Of arealight_pass_shadow_picks_size bytes. Without shadow rays 0.
+    struct ArealightBuffer shadow_picks;
+    // Three numbers of 32 bits: how many lights, how many shapes, and how many of the first lights are
+    // convex quads without a texture. Without ArealightPassOptions.light_counts 0.
+    struct ArealightBuffer light_counts;
+} ArealightResources;
+
+// What memory an image of the library's needs.
+typedef struct ArealightMemory {
+    // VkMemoryRequirements of the image.
+    uint64_t size;
+    // VkMemoryRequirements of the image.
+    uint64_t alignment;
+    // Of the table: bytes of the staging buffer, VK_BUFFER_USAGE_TRANSFER_SRC_BIT. Of light textures 0.
+    uint64_t staging_size;
+    // VkMemoryRequirements of the image.
+    uint32_t memory_type_bits;
+    // 0
+    uint32_t reserved;
+} ArealightMemory;
+
+// How the table gets to the device.
+typedef struct ArealightUpload {
+    // The staging buffer's memory at staging_offset, mapped; the texels are written there.
+    void *staging_data;
+    // Bytes from there on: ArealightMemory.staging_size or more.
+    uint64_t staging_size;
+    // VkBuffer; it lives until the commands have run.
+    uint64_t staging_buffer;
+    // Where in it, a multiple of 16.
+    uint64_t staging_offset;
+    // VkCommandBuffer that is being recorded, outside a render pass, on a queue with graphics or compute.
+    void *command_buffer;
+} ArealightUpload;
+
+// Arrays of the host for packed lights, as the buffers of ArealightResources hold them; aligned to 4 bytes,
+// null to ask for the sizes alone.
+typedef struct ArealightPackedLights {
+    // Where polygons and meshes go.
+    void *lights;
+    // Where their vertices go.
+    void *vertices;
+    // Where disks, spheres and tubes go.
+    void *shapes;
+    // In: bytes at `lights`. Out: bytes that are needed, 64 a light.
+    uint64_t lights_size;
+    // In: bytes at `vertices`. Out: bytes that are needed, 16 a vertex.
+    uint64_t vertices_size;
+    // In: bytes at `shapes`. Out: bytes that are needed, 64 a light.
+    uint64_t shapes_size;
+    // Out: for ArealightFrame.lights.
+    struct ArealightLightSummary summary;
+} ArealightPackedLights;
+
+// How far a light is of any matter: arealight_light_reach.
+typedef struct ArealightReach {
+    // The light's middle, in world positions.
+    double center[3];
+    // How far from there it may reflect more than the threshold; infinite where nothing bounds it.
+    double radius;
+    // The lower corner of a box with the same bound: smaller for flat one-sided lights.
+    double low[3];
+    // The upper corner.
+    double high[3];
+} ArealightReach;
+
+// Options of a medium's pass. All zero: at the middle of each froxel, without shadow rays.
+typedef struct ArealightMediumOptions {
+    // 1: each sample has a ray over each light; 2: one ray alone, over a light that is drawn by how much of
+    // it is scattered there. 0: none.
+    uint32_t shadow_rays;
+    // At how many points of a froxel light is scattered, each with rays of its own. 0 is 1.
+    uint32_t samples;
+    // 1: scattering and extinction are read from ArealightMediumResources.medium. Else 0.
+    uint32_t by_image;
+    // 1: a froxel's distance is drawn within it, by ArealightMediumFrame.seed. Else 0.
+    uint32_t jitter;
+    // 1: froxels that surfaces hide from every pixel are filled, too. 0: they hold nothing, and positions
+    // are of the picture's size.
+    uint32_t fill_hidden;
+    // `medium_scatter.comp` of the host's, as ArealightShadowOptions.module.
+    struct ArealightModule module;
+} ArealightMediumOptions;
+
+// The resources of a descriptor set.
+typedef struct ArealightSetLayout {
+    // VkDescriptorSetLayout, the library's own.
+    uint64_t layout;
+    // Descriptors that a set takes from its pool: VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE.
+    uint32_t sampled_images;
+    // VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
+    uint32_t combined_image_samplers;
+    // VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
+    uint32_t storage_images;
+    // VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
+    uint32_t storage_buffers;
+    // VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC
+    uint32_t dynamic_storage_buffers;
+    // 0
+    uint32_t reserved;
+} ArealightSetLayout;
+
+// The host's resources of a medium's pass beyond those of its shade pass.
+typedef struct ArealightMediumResources {
+    // A 3D storage image (rgba16f) of ArealightMediumFrame.froxels, in VK_IMAGE_LAYOUT_GENERAL. The pass
+    // alone writes it: radiance up to a froxel's far side, in a the part that is let through.
+    struct ArealightImage froxels;
+    // With ArealightMediumOptions.by_image a 3D image of that size: per unit of length scattering in rgb,
+    // extinction in a. Else 0.
+    struct ArealightImage medium;
+    // With shadow rays ArealightBlockerArrays.nodes. 0 with a module of the host's.
+    struct ArealightBuffer blocker_nodes;
+    // ArealightBlockerArrays.triangles; without triangles, any buffer. 0 with a module of the host's.
+    struct ArealightBuffer blocker_triangles;
+} ArealightMediumResources;
 
 // A frame of a medium's pass.
 typedef struct ArealightMediumFrame {
@@ -936,6 +954,51 @@ extern "C" {
 
 // AREALIGHT_ABI_VERSION of the library, for those that load it at run time.
 uint32_t arealight_abi_version(void);
+
+// Makes all that does not depend on the size of pictures. `info` may be null: zeros. `*out` is the host's to
+// destroy.
+//
+// The host sees to it:
+// As arealight_create.
+enum ArealightResult arealight_area_lights_create(const struct ArealightHost *host,
+                                                  const struct ArealightAreaLightsInfo *info,
+                                                  struct ArealightAreaLights **out);
+
+// Records a frame into a VkCommandBuffer: lights, which are packed and uploaded, table, passes, and the
+// barriers between. Images are used in the compute stage; barriers before and after are the host's.
+//
+// Frames in flight have a `place` each, from 0 to before ArealightAreaLightsInfo.frames_in_flight. Lights
+// are in world positions, and the positions of the G-buffer relative to `origin` (three numbers). Of `frame`
+// `lights`, `seed` and `tile_lists` are not read; of `resources` all images are, with
+// arealight_textures_image where lights are textured, but of the buffers `light_counts` alone. All may be
+// others in each frame. Where it fails, the commands must not be submitted.
+//
+// The host sees to it:
+// Pointers are null or valid, with as many items as their counts say. The command buffer is being recorded,
+// outside a render pass; it is submitted to one queue, which computes, in the order of the calls. The frame
+// before at this place is done. The images are of the frame's size and outlive the commands.
+enum ArealightResult arealight_area_lights_shade(struct ArealightAreaLights *area_lights,
+                                                 void *command_buffer,
+                                                 uint32_t place,
+                                                 const struct ArealightLight *lights,
+                                                 uint32_t light_count,
+                                                 const double *origin,
+                                                 const struct ArealightFrame *frame,
+                                                 const struct ArealightResources *resources);
+
+// Says what blocks shadow rays from the next frame on, relative to that frame's origin: by default nothing.
+// It is copied.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_area_lights_set_blockers(struct ArealightAreaLights *area_lights,
+                                                        const struct ArealightBlockers *blockers);
+
+// Destroys it with all that it owns. Null is nothing.
+//
+// The host sees to it:
+// No commands that it recorded are pending, the device is alive, and no other thread uses the object.
+enum ArealightResult arealight_area_lights_destroy(struct ArealightAreaLights *area_lights);
 
 // Makes the library's view of a device. `table` may be null: GGX in 32-bit floats. `*out` is the host's to
 // destroy.
@@ -1331,10 +1394,64 @@ enum ArealightResult arealight_textures_destroy(struct ArealightTextures *textur
 #else
 #define AREALIGHT_ASSERT(condition) _Static_assert(condition, #condition)
 #endif
-AREALIGHT_ASSERT(sizeof(ArealightModule) == 24);
-AREALIGHT_ASSERT(offsetof(ArealightModule, words) == 0);
-AREALIGHT_ASSERT(offsetof(ArealightModule, size) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightModule, host_set_layout) == 16);
+AREALIGHT_ASSERT(sizeof(ArealightAreaLightsInfo) == 128);
+AREALIGHT_ASSERT(offsetof(ArealightAreaLightsInfo, options) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightAreaLightsInfo, table) == 112);
+AREALIGHT_ASSERT(offsetof(ArealightAreaLightsInfo, frames_in_flight) == 120);
+AREALIGHT_ASSERT(offsetof(ArealightAreaLightsInfo, shadow_filter) == 124);
+AREALIGHT_ASSERT(sizeof(ArealightMediumOptions) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, shadow_rays) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, samples) == 4);
+AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, by_image) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, jitter) == 12);
+AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, fill_hidden) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, module) == 24);
+AREALIGHT_ASSERT(sizeof(ArealightMediumResources) == 80);
+AREALIGHT_ASSERT(offsetof(ArealightMediumResources, froxels) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightMediumResources, medium) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightMediumResources, blocker_nodes) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightMediumResources, blocker_triangles) == 56);
+AREALIGHT_ASSERT(sizeof(ArealightMediumFrame) == 64);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, frame) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, host_set) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, froxels) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, scattering) == 28);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, extinction) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, anisotropy) == 44);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, nearest) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, farthest) == 52);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, seed) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, cull_radiance) == 60);
+AREALIGHT_ASSERT(sizeof(ArealightTextureOptions) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, side) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, layers) == 4);
+AREALIGHT_ASSERT(sizeof(ArealightTextureNeeds) == 104);
+AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, memory) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, level_set) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, source_set) == 64);
+AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, level_set_count) == 96);
+AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, reserved) == 100);
+AREALIGHT_ASSERT(sizeof(ArealightTextureSetup) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, memory) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, memory_offset) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, level_sets) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, level_set_count) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, reserved) == 28);
+AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, command_buffer) == 32);
+AREALIGHT_ASSERT(sizeof(ArealightTextureUpdate) == 80);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, source_set) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, part_low) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, part_size) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, layer) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, source_width) == 44);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, source_height) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, decode_srgb) == 52);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, wrap_u) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, wrap_v) == 60);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, divisor) == 64);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, aspect) == 68);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, is_ellipse) == 72);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, reserved) == 76);
 AREALIGHT_ASSERT(sizeof(ArealightHost) == 56);
 AREALIGHT_ASSERT(offsetof(ArealightHost, abi_version) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightHost, api_version) == 4);
@@ -1361,6 +1478,10 @@ AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_size) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_buffer) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_offset) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, command_buffer) == 32);
+AREALIGHT_ASSERT(sizeof(ArealightModule) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightModule, words) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightModule, size) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightModule, host_set_layout) == 16);
 AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 112);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, surfaces) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, form_factor) == 4);
@@ -1445,6 +1566,10 @@ AREALIGHT_ASSERT(sizeof(ArealightImage) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightImage, view) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightImage, layout) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightImage, reserved) == 12);
+AREALIGHT_ASSERT(sizeof(ArealightBuffer) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightBuffer, buffer) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightBuffer, offset) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightBuffer, range) == 16);
 AREALIGHT_ASSERT(sizeof(ArealightResources) == 376);
 AREALIGHT_ASSERT(offsetof(ArealightResources, lights) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightResources, light_vertices) == 24);
@@ -1498,64 +1623,11 @@ AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, frame) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, host_set) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, origin_shift) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, reserved) == 28);
-AREALIGHT_ASSERT(sizeof(ArealightMediumOptions) == 48);
-AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, shadow_rays) == 0);
-AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, samples) == 4);
-AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, by_image) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, jitter) == 12);
-AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, fill_hidden) == 16);
-AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, module) == 24);
-AREALIGHT_ASSERT(sizeof(ArealightMediumResources) == 80);
-AREALIGHT_ASSERT(offsetof(ArealightMediumResources, froxels) == 0);
-AREALIGHT_ASSERT(offsetof(ArealightMediumResources, medium) == 16);
-AREALIGHT_ASSERT(offsetof(ArealightMediumResources, blocker_nodes) == 32);
-AREALIGHT_ASSERT(offsetof(ArealightMediumResources, blocker_triangles) == 56);
-AREALIGHT_ASSERT(sizeof(ArealightMediumFrame) == 64);
-AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, frame) == 0);
-AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, host_set) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, froxels) == 16);
-AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, scattering) == 28);
-AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, extinction) == 40);
-AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, anisotropy) == 44);
-AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, nearest) == 48);
-AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, farthest) == 52);
-AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, seed) == 56);
-AREALIGHT_ASSERT(offsetof(ArealightMediumFrame, cull_radiance) == 60);
 AREALIGHT_ASSERT(sizeof(ArealightBlockerArrays) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, nodes) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, triangles) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, nodes_size) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, triangles_size) == 24);
-AREALIGHT_ASSERT(sizeof(ArealightTextureOptions) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, side) == 0);
-AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, layers) == 4);
-AREALIGHT_ASSERT(sizeof(ArealightTextureNeeds) == 104);
-AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, memory) == 0);
-AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, level_set) == 32);
-AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, source_set) == 64);
-AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, level_set_count) == 96);
-AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, reserved) == 100);
-AREALIGHT_ASSERT(sizeof(ArealightTextureSetup) == 40);
-AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, memory) == 0);
-AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, memory_offset) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, level_sets) == 16);
-AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, level_set_count) == 24);
-AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, reserved) == 28);
-AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, command_buffer) == 32);
-AREALIGHT_ASSERT(sizeof(ArealightTextureUpdate) == 80);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, source_set) == 0);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, part_low) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, part_size) == 24);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, layer) == 40);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, source_width) == 44);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, source_height) == 48);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, decode_srgb) == 52);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, wrap_u) == 56);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, wrap_v) == 60);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, divisor) == 64);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, aspect) == 68);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, is_ellipse) == 72);
-AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, reserved) == 76);
 #undef AREALIGHT_ASSERT
 #endif
 

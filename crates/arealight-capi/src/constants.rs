@@ -215,26 +215,19 @@ pub const AREALIGHT_WHOLE_SIZE: u64 = u64::MAX;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arealight::Plane;
+    use arealight::{Effects, Plane};
 
     #[test]
-    fn planes_have_the_numbers_of_the_table() {
-        let constants = [
-            (Plane::Position, AREALIGHT_PLANE_POSITION),
-            (Plane::Normal, AREALIGHT_PLANE_NORMAL),
-            (Plane::BaseColor, AREALIGHT_PLANE_BASE_COLOR),
-            (Plane::Specular, AREALIGHT_PLANE_SPECULAR),
-            (Plane::Coat, AREALIGHT_PLANE_COAT),
-            (Plane::Sheen, AREALIGHT_PLANE_SHEEN),
-            (Plane::Anisotropy, AREALIGHT_PLANE_ANISOTROPY),
-            (Plane::Film, AREALIGHT_PLANE_FILM),
-            (Plane::Stencil, AREALIGHT_PLANE_STENCIL),
-            (Plane::Motion, AREALIGHT_PLANE_MOTION),
-        ];
-        assert_eq!(constants.map(|(plane, _)| plane), Plane::ALL);
-        for (plane, number) in constants {
-            assert_eq!(number, plane as u32, "{plane:?}");
+    fn constants_have_the_numbers_of_the_vocabulary() {
+        let lines = || include_str!("constants.rs").lines();
+        let effects =
+            Effects::all().iter_names().map(|(name, effect)| ("EFFECT", name.into(), effect.bits()));
+        let planes = Plane::ALL.map(|plane| ("PLANE", plane.name().to_uppercase(), plane as u32));
+        for (kind, name, number) in effects.chain(planes) {
+            let expected = format!("pub const AREALIGHT_{kind}_{name}: u32 = {number};");
+            assert!(lines().any(|line| line == expected), "{expected}");
         }
-        assert_eq!(AREALIGHT_PLANE_COUNT, Plane::COUNT);
+        let effects = lines().filter(|line| line.starts_with("pub const AREALIGHT_EFFECT_")).count();
+        assert_eq!((effects, AREALIGHT_PLANE_COUNT), (Effects::all().iter().count(), Plane::COUNT));
     }
 }

@@ -1,17 +1,16 @@
 //! From the host's handles to a table on its device.
 
-use crate::constants::{AREALIGHT_TABLE_RGBA16F, AREALIGHT_TABLE_RGBA32F};
 use crate::failure::{ArealightResult, Failure, call};
-use crate::options::specular_lobes_of;
+use crate::lights::{check_size, copy, fill};
+use crate::options::{level, specular_lobes_of};
 use crate::types::{ArealightHost, ArealightMemory, ArealightTable, ArealightUpload};
 use crate::{AREALIGHT_ABI_VERSION, arguments, handles, loader};
 use arealight::LightTable;
-use arealight::table::LobeHorizon;
 use arealight_table::TableFile;
 use arealight_vk::ash::vk::{self, Handle as _};
-use arealight_vk::{Context, TableFormat, TableImage};
+use arealight_vk::{Context, Resource, TableFormat, TableImage, ash};
 use std::ffi::c_void;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard};
 
 /// The library on a device of the host, with a light table.
 pub struct Arealight {
@@ -38,14 +37,22 @@ impl Arealight {
     }
 
     fn image(&self) -> MutexGuard<'_, Image> {
-        // What a panic leaves behind is still the image
-        self.image.lock().unwrap_or_else(PoisonError::into_inner)
+        handles::lock(&self.image)
     }
 
-    /// The table as a pass reads it; `None` before it has memory.
-    pub(crate) fn table_resource(&self) -> Option<arealight_vk::Resource> {
-        let image = self.image();
-        image.memory.map(|_| image.table.resource())
+    /// The table as a pass reads it; an error before it has memory.
+    pub(crate) fn table_resource(&self) -> Result<Resource, Failure> {
+        Ok(self.image().with_memory()?.resource())
+    }
+}
+
+impl Image {
+    fn with_memory(&self) -> Result<&TableImage, Failure> {
+        self.memory.map(|_| &self.table).ok_or_else(|| {
+            Failure::argument(
+                "arealight: its table has no memory yet; call arealight_table_bind_memory first",
+            )
+        })
     }
 }
 
@@ -60,60 +67,72 @@ pub unsafe extern "C" fn arealight_create(
     table: *const ArealightTable,
     out: *mut *mut Arealight,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        unsafe { arguments::write(out, std::ptr::null_mut(), "out") }?;
-        // The version comes first in every version
-        // SAFETY: as above.
-        let version = *unsafe { arguments::read(host.cast::<u32>(), "host") }?;
-        if version != AREALIGHT_ABI_VERSION {
-            let message = format!(
-                "host.abi_version: {version}, but this library has {AREALIGHT_ABI_VERSION}; compile the host \
-                with the \
-                 header that came with the library"
-            );
-            return Err(Failure::new(ArealightResult::ErrorAbiVersion, message));
-        }
-        // SAFETY: as above.
-        let (host, (table, format)) = unsafe { (arguments::read(host, "host")?, read_table(table)?) };
-        if host.api_version < vk::API_VERSION_1_1 {
-            let message = format!(
-                "host.api_version: {}.{}, but every kernel needs Vulkan 1.1: set \
-                VkApplicationInfo.apiVersion",
-                vk::api_version_major(host.api_version),
-                vk::api_version_minor(host.api_version)
-            );
-            return Err(Failure::new(ArealightResult::ErrorMissingFeature, message));
-        }
-
-        // SAFETY: the caller vouches for the handles; the device outlives what is made.
-        let arealight = unsafe {
-            let (instance, device) = loader::load(host)?;
-            let physical_device = vk::PhysicalDevice::from_raw(host.physical_device as u64);
-            let context = Context::new(&instance, physical_device, &device)?
-                .with_pipeline_cache(vk::PipelineCache::from_raw(host.pipeline_cache));
-            let image = Image { table: TableImage::new(&context, &table, format)?, memory: None };
-            Arealight { context, format, table, image: Mutex::new(image) }
-        };
-        // SAFETY: as above.
-        unsafe { arguments::write(out, handles::give(arealight), "out") }
+    // SAFETY: the caller vouches for pointers and handles; the device outlives what is made.
+    call(|| unsafe {
+        arguments::write(out, std::ptr::null_mut(), "out")?;
+        let (host, (table, format)) = (read_host(host)?, read_table(table)?);
+        let (.., context) = open(host)?;
+        let image = Image { table: TableImage::new(&context, &table, format)?, memory: None };
+        let arealight = Arealight { context, format, table, image: Mutex::new(image) };
+        arguments::write(out, handles::give(arealight), "out")
     })
+}
+
+/// A host of this version.
+///
+/// # Safety
+/// `host` is null or valid.
+pub(crate) unsafe fn read_host<'a>(host: *const ArealightHost) -> Result<&'a ArealightHost, Failure> {
+    // The version comes first in every version
+    // SAFETY: the same contract, here and below.
+    let version = *unsafe { arguments::read(host.cast::<u32>(), "host") }?;
+    if version != AREALIGHT_ABI_VERSION {
+        let message = format!(
+            "host.abi_version: {version}, but this library has {AREALIGHT_ABI_VERSION}; compile the host \
+             with the header that came with the library"
+        );
+        return Err(Failure::new(ArealightResult::ErrorAbiVersion, message));
+    }
+    // SAFETY: as above.
+    let host = unsafe { arguments::read(host, "host") }?;
+    if host.api_version < vk::API_VERSION_1_1 {
+        let message = format!(
+            "host.api_version: {}.{}, but every kernel needs Vulkan 1.1: set VkApplicationInfo.apiVersion",
+            vk::api_version_major(host.api_version),
+            vk::api_version_minor(host.api_version)
+        );
+        return Err(Failure::new(ArealightResult::ErrorMissingFeature, message));
+    }
+    Ok(host)
+}
+
+/// The host's device, with the functions of both.
+///
+/// # Safety
+/// The handles are valid and belong together; the device outlives what is made.
+pub(crate) unsafe fn open(
+    host: &ArealightHost,
+) -> Result<(ash::Instance, vk::PhysicalDevice, ash::Device, Context), Failure> {
+    // SAFETY: the same contract.
+    unsafe {
+        let (instance, device) = loader::load(host)?;
+        let physical_device = vk::PhysicalDevice::from_raw(host.physical_device as u64);
+        let context = Context::new(&instance, physical_device, &device)?
+            .with_pipeline_cache(vk::PipelineCache::from_raw(host.pipeline_cache));
+        Ok((instance, physical_device, device, context))
+    }
 }
 
 /// # Safety
 /// `table` is null or valid, with its bytes.
-unsafe fn read_table(table: *const ArealightTable) -> Result<(LightTable, TableFormat), Failure> {
+pub(crate) unsafe fn read_table(table: *const ArealightTable) -> Result<(LightTable, TableFormat), Failure> {
     if table.is_null() {
         return Ok((LightTable::ggx(), TableFormat::Rgba32Float));
     }
     // SAFETY: the same contract.
     let table = unsafe { arguments::read(table, "table") }?;
     arguments::refuse_reserved(table.reserved, "table.reserved")?;
-    let format = match table.format {
-        AREALIGHT_TABLE_RGBA32F => TableFormat::Rgba32Float,
-        AREALIGHT_TABLE_RGBA16F => TableFormat::Rgba16Float,
-        other => return Err(Failure::argument(format!("table.format: {other} is no AREALIGHT_TABLE_*"))),
-    };
+    let format = level(table.format, &[TableFormat::Rgba32Float, TableFormat::Rgba16Float], "table.format")?;
     if table.bytes.is_null() && table.size == 0 {
         return Ok((LightTable::ggx(), format));
     }
@@ -132,26 +151,19 @@ pub unsafe extern "C" fn arealight_table_memory(
     arealight: *const Arealight,
     out: *mut ArealightMemory,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let arealight = unsafe { handles::borrow(arealight, "arealight") }?;
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let arealight = handles::borrow(arealight, "arealight")?;
+        let staging_size = arealight.format.bytes(&arealight.table).len() as u64;
         let needed = arealight.image().table.memory_requirements();
-        let memory = ArealightMemory {
-            size: needed.size,
-            alignment: needed.alignment,
-            staging_size: arealight.staging_size(),
-            memory_type_bits: needed.memory_type_bits,
-            reserved: 0,
-        };
-        // SAFETY: as above.
-        unsafe { arguments::write(out, memory, "out") }
+        arguments::write(out, memory_of(needed, staging_size), "out")
     })
 }
 
-impl Arealight {
-    fn staging_size(&self) -> u64 {
-        self.format.bytes(&self.table).len() as u64
-    }
+/// What an image's memory is to be.
+pub(crate) fn memory_of(needed: vk::MemoryRequirements, staging_size: u64) -> ArealightMemory {
+    let vk::MemoryRequirements { size, alignment, memory_type_bits } = needed;
+    ArealightMemory { size, alignment, staging_size, memory_type_bits, reserved: 0 }
 }
 
 /// Binds memory to the table, once: `memory` is a VkDeviceMemory that has at `memory_offset` what
@@ -167,9 +179,9 @@ pub unsafe extern "C" fn arealight_table_bind_memory(
     memory: u64,
     memory_offset: u64,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointer.
-        let arealight = unsafe { handles::borrow(arealight, "arealight")? };
+    // SAFETY: the caller vouches for the pointer and the memory.
+    call(|| unsafe {
+        let arealight = handles::borrow(arealight, "arealight")?;
         arguments::refuse_null([(memory == 0, "memory")])?;
         let mut image = arealight.image();
         let place = (memory, memory_offset);
@@ -179,8 +191,7 @@ pub unsafe extern "C" fn arealight_table_bind_memory(
             ));
         }
         if image.memory.is_none() {
-            // SAFETY: the caller vouches for the memory.
-            unsafe { image.table.bind_memory(vk::DeviceMemory::from_raw(memory), memory_offset) }?;
+            image.table.bind_memory(vk::DeviceMemory::from_raw(memory), memory_offset)?;
             image.memory = Some(place);
         }
         Ok(())
@@ -198,41 +209,27 @@ pub unsafe extern "C" fn arealight_table_upload(
     arealight: *mut Arealight,
     upload: *const ArealightUpload,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers.
-        let (arealight, upload) =
-            unsafe { (handles::borrow(arealight, "arealight")?, arguments::read(upload, "upload")?) };
+    // SAFETY: the caller vouches for the pointers, buffer and command buffer.
+    call(|| unsafe {
+        let arealight = handles::borrow(arealight, "arealight")?;
+        let upload = arguments::read(upload, "upload")?;
         arguments::refuse_null([
             (upload.staging_data.is_null(), "upload.staging_data"),
             (upload.staging_buffer == 0, "upload.staging_buffer"),
             (upload.command_buffer.is_null(), "upload.command_buffer"),
         ])?;
         let bytes = arealight.format.bytes(&arealight.table);
-        if upload.staging_size < bytes.len() as u64 {
-            let message =
-                format!("upload.staging_size: {}, but {} are needed", upload.staging_size, bytes.len());
-            return Err(Failure::new(ArealightResult::ErrorTooSmall, message));
-        }
+        check_size(&bytes, upload.staging_size, "upload.staging_size")?;
         if upload.staging_offset % 16 != 0 {
             let message = format!("upload.staging_offset: {} is no multiple of 16", upload.staging_offset);
             return Err(Failure::argument(message));
         }
         let image = arealight.image();
-        if image.memory.is_none() {
-            return Err(Failure::argument(
-                "arealight: its table has no memory yet; call arealight_table_bind_memory first",
-            ));
-        }
-
-        // SAFETY: the caller vouches for buffer and command buffer; the mapped memory is large enough.
-        unsafe {
-            std::ptr::copy_nonoverlapping(bytes.as_ptr(), upload.staging_data.cast(), bytes.len());
-            image.table.record_upload(
-                vk::CommandBuffer::from_raw(upload.command_buffer as u64),
-                vk::Buffer::from_raw(upload.staging_buffer),
-                upload.staging_offset,
-            );
-        }
+        let table = image.with_memory()?;
+        copy(&bytes, upload.staging_data);
+        let commands = vk::CommandBuffer::from_raw(upload.command_buffer as u64);
+        let staging = vk::Buffer::from_raw(upload.staging_buffer);
+        table.record_upload(commands, staging, upload.staging_offset);
         Ok(())
     })
 }
@@ -249,16 +246,14 @@ pub unsafe extern "C" fn arealight_lobe_density(
     roughness: f64,
     out: *mut f64,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let arealight = unsafe { handles::borrow(arealight, "arealight") }?;
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let arealight = handles::borrow(arealight, "arealight")?;
         let specular_lobes = specular_lobes_of(specular_lobes, "specular_lobes")?;
         if !(0.0..=1.0).contains(&roughness) {
             return Err(Failure::argument(format!("roughness: {roughness} must be from 0 to 1")));
         }
-        let density = arealight.table.lobe_density(specular_lobes, roughness);
-        // SAFETY: as above.
-        unsafe { arguments::write(out, density, "out") }
+        arguments::write(out, arealight.table.lobe_density(specular_lobes, roughness), "out")
     })
 }
 
@@ -276,28 +271,15 @@ pub unsafe extern "C" fn arealight_lobe_horizons(
     data: *mut c_void,
     size: *mut u64,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let (arealight, given) = unsafe {
-            (handles::borrow(arealight, "arealight")?, *arguments::read(size.cast_const(), "size")?)
-        };
+    // SAFETY: the caller vouches for the pointers; what is copied has room.
+    call(|| unsafe {
+        let arealight = handles::borrow(arealight, "arealight")?;
+        let given = *arguments::read(size.cast_const(), "size")?;
         let specular_lobes = specular_lobes_of(specular_lobes, "specular_lobes")?;
-        let cells = u64::from(arealight.table.size() - 1).pow(2);
-        let needed = cells * size_of::<LobeHorizon>() as u64;
-        // SAFETY: as above.
-        unsafe { arguments::write(size, needed, "size") }?;
-        if data.is_null() {
-            return Ok(());
-        }
-        if given < needed {
-            let message = format!("size: {given}, but {needed} are needed");
-            return Err(Failure::new(ArealightResult::ErrorTooSmall, message));
-        }
         let horizons = arealight.table.lobe_horizons(specular_lobes);
-        let bytes: &[u8] = bytemuck::cast_slice(&horizons);
-        // SAFETY: as above, and there are as many bytes.
-        unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), data.cast(), bytes.len()) };
-        Ok(())
+        let bytes = bytemuck::cast_slice(&horizons);
+        arguments::write(size, bytes.len() as u64, "size")?;
+        fill([(data, given, bytes, "size")])
     })
 }
 

@@ -1,10 +1,11 @@
 //! Which objects of the host are alive, so that a handle that was destroyed, or is of another kind, is
 //! refused.
 
+use crate::arguments;
 use crate::failure::Failure;
 use std::any::{TypeId, type_name};
 use std::collections::HashMap;
-use std::sync::{LazyLock, Mutex, PoisonError};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 /// Addresses of objects, with their types. An address that is used again for another object of the same type
 /// cannot be told from it.
@@ -12,7 +13,12 @@ static ALIVE: LazyLock<Mutex<HashMap<usize, TypeId>>> = LazyLock::new(Mutex::def
 
 fn alive<R>(function: impl FnOnce(&mut HashMap<usize, TypeId>) -> R) -> R {
     // Each use is one operation of the map, which a panic cannot leave half done
-    function(&mut ALIVE.lock().unwrap_or_else(PoisonError::into_inner))
+    function(&mut lock(&ALIVE))
+}
+
+/// What a panic leaves behind is still the object, good for being destroyed.
+pub fn lock<T>(object: &Mutex<T>) -> MutexGuard<'_, T> {
+    object.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Gives an object to the host.
@@ -30,9 +36,7 @@ pub fn give<T: 'static>(object: T) -> *mut T {
 /// # Errors
 /// [`Failure`] names `argument` where it is null, destroyed, or something else.
 pub unsafe fn borrow<'a, T: 'static>(pointer: *const T, argument: &str) -> Result<&'a T, Failure> {
-    if pointer.is_null() {
-        return Err(Failure::argument(format!("{argument}: is null")));
-    }
+    arguments::refuse_null([(pointer.is_null(), argument)])?;
     if alive(|map| map.get(&(pointer as usize)) == Some(&TypeId::of::<T>())) {
         // SAFETY: the object is alive, of that type, and stays so by the contract.
         return Ok(unsafe { &*pointer });

@@ -10,6 +10,7 @@
 //! |---|---|
 //! | [`types`] | what crosses the boundary: structs |
 //! | [`constants`] | what numbers in them mean |
+//! | [`area_lights`] | the facade, which owns what shading needs |
 //! | [`device`] | from the host's handles to a table on its device |
 //! | [`pass`] | the shade pass |
 //! | [`lights`] | lights, packed for its frames |
@@ -27,6 +28,7 @@
 
 #![allow(clippy::doc_markdown, reason = "the comments become those of a C header, where backticks are noise")]
 
+pub mod area_lights;
 mod arguments;
 pub mod constants;
 pub mod device;
@@ -41,6 +43,7 @@ pub mod shadows;
 pub mod textures;
 pub mod types;
 
+pub use area_lights::*;
 pub use constants::*;
 pub use device::*;
 pub use failure::{ArealightResult, arealight_last_error};
@@ -60,6 +63,7 @@ pub const AREALIGHT_ABI_VERSION: u32 = 2;
 const _: fn() = || {
     fn shared<T: Sync + 'static>() {}
     shared::<Arealight>();
+    shared::<ArealightAreaLights>();
     shared::<ArealightPass>();
     shared::<ArealightShadowPass>();
     shared::<ArealightMediumPass>();

@@ -3,14 +3,16 @@
 use crate::arguments;
 use crate::constants::{
     AREALIGHT_LIGHT_DISK, AREALIGHT_LIGHT_MESH, AREALIGHT_LIGHT_POLYGON, AREALIGHT_LIGHT_SPHERE,
-    AREALIGHT_LIGHT_TUBE, AREALIGHT_TUBE_FLAT, AREALIGHT_TUBE_OPEN, AREALIGHT_TUBE_ROUND,
+    AREALIGHT_LIGHT_TUBE,
 };
 use crate::failure::{ArealightResult, Failure, call};
+use crate::options::{flag, level};
 use crate::types::{ArealightLight, ArealightLightSummary, ArealightPackedLights, ArealightReach};
 use arealight::{
     Effects, Light, LightError, LightShape, LightSummary, LightTexture, Opening, PackedLights, Profile,
     TubeEnds, reach,
 };
+use bytemuck::cast_slice;
 use glam::{DVec2, DVec3, Vec3};
 use std::ffi::{CStr, c_char, c_void};
 
@@ -27,43 +29,21 @@ pub unsafe extern "C" fn arealight_pack_lights(
     origin: *const f64,
     packed: *mut ArealightPackedLights,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let (lights, origin, mut arrays) = unsafe {
-            (
-                arguments::array(lights, light_count as usize, "lights")?,
-                read_origin(origin)?,
-                *arguments::read(packed.cast_const(), "packed")?,
-            )
-        };
-        // SAFETY: as above.
-        let made = PackedLights::new(&unsafe { read_lights(lights) }?, origin)?;
-
-        // Say what is needed, then copy
-        let bytes: [&[u8]; 3] = [
-            bytemuck::cast_slice(&made.lights),
-            bytemuck::cast_slice(&made.vertices),
-            bytemuck::cast_slice(&made.shapes),
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let lights = read_lights(lights, light_count)?;
+        let (origin, given) = (read_origin(origin)?, *arguments::read(packed.cast_const(), "packed")?);
+        let made = PackedLights::new(&lights, origin)?;
+        let parts: [(_, _, &[u8], _); 3] = [
+            (given.lights, given.lights_size, cast_slice(&made.lights), "packed.lights_size"),
+            (given.vertices, given.vertices_size, cast_slice(&made.vertices), "packed.vertices_size"),
+            (given.shapes, given.shapes_size, cast_slice(&made.shapes), "packed.shapes_size"),
         ];
-        let given = [
-            (arrays.lights, arrays.lights_size, "packed.lights_size"),
-            (arrays.vertices, arrays.vertices_size, "packed.vertices_size"),
-            (arrays.shapes, arrays.shapes_size, "packed.shapes_size"),
-        ];
-        [arrays.lights_size, arrays.vertices_size, arrays.shapes_size] =
-            bytes.map(|bytes| bytes.len() as u64);
-        arrays.summary = write_summary(made.summary());
-        // SAFETY: as above.
-        unsafe { arguments::write(packed, arrays, "packed") }?;
-        let arrays = || given.into_iter().zip(bytes).filter(|((to, ..), _)| !to.is_null());
-        for ((_, size, field), bytes) in arrays() {
-            check_size(bytes, size, field)?;
-        }
-        for ((to, ..), bytes) in arrays() {
-            // SAFETY: as above; there is room.
-            unsafe { copy(bytes, to) };
-        }
-        Ok(())
+        let [lights_size, vertices_size, shapes_size] = parts.map(|(_, _, bytes, _)| bytes.len() as u64);
+        let summary = write_summary(made.summary());
+        let needed = ArealightPackedLights { lights_size, vertices_size, shapes_size, summary, ..given };
+        arguments::write(packed, needed, "packed")?;
+        fill(parts)
     })
 }
 
@@ -81,9 +61,9 @@ pub unsafe extern "C" fn arealight_light_reach(
     density: f64,
     out: *mut ArealightReach,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let light = unsafe { read_light(0, arguments::read(light, "light")?) }?;
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let light = read_light(0, arguments::read(light, "light")?)?;
         light.validate().map_err(|fault| LightError { index: 0, name: light.name.clone(), fault })?;
         for (value, field) in [(threshold, "threshold"), (density, "density")] {
             if !(value >= 0.0 && value.is_finite()) {
@@ -93,8 +73,7 @@ pub unsafe extern "C" fn arealight_light_reach(
         let radius = reach::radius(&light, threshold, density);
         let [low, high] = reach::bounds(&light, radius).map(|corner| corner.to_array());
         let found = ArealightReach { center: light.shape.center().to_array(), radius, low, high };
-        // SAFETY: as above.
-        unsafe { arguments::write(out, found, "out") }
+        arguments::write(out, found, "out")
     })
 }
 
@@ -118,7 +97,7 @@ pub(crate) fn read_effects(bits: u32, field: &str) -> Result<Effects, Failure> {
 
 /// # Safety
 /// `origin` is null or of three numbers.
-unsafe fn read_origin(origin: *const f64) -> Result<DVec3, Failure> {
+pub(crate) unsafe fn read_origin(origin: *const f64) -> Result<DVec3, Failure> {
     // SAFETY: the same contract.
     let origin = DVec3::from_slice(unsafe { arguments::array(origin, 3, "origin") }?);
     if origin.is_finite() {
@@ -140,14 +119,6 @@ unsafe fn read_name(name: *const c_char) -> String {
     unsafe { CStr::from_ptr(name) }.to_string_lossy().into_owned()
 }
 
-/// 0 or 1 as they are meant.
-pub(crate) fn read_flag(flag: u32, field: &str) -> Result<bool, Failure> {
-    match flag {
-        0 | 1 => Ok(flag == 1),
-        other => Err(Failure::argument(format!("{field}: {other} must be 0 or 1"))),
-    }
-}
-
 pub(crate) fn check_size(bytes: &[u8], size: u64, field: &str) -> Result<(), Failure> {
     if size < bytes.len() as u64 {
         let message = format!("{field}: {size}, but {} are needed", bytes.len());
@@ -163,11 +134,29 @@ pub(crate) unsafe fn copy(bytes: &[u8], to: *mut c_void) {
     unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), to.cast(), bytes.len()) };
 }
 
+/// Copies to arrays that are not null, if each has room: where to, how many bytes there are, what, and which
+/// field says so.
+///
 /// # Safety
-/// The lights' pointers are null or valid.
-pub(crate) unsafe fn read_lights(lights: &[ArealightLight]) -> Result<Vec<Light>, Failure> {
+/// Arrays have as many bytes, that nobody else uses.
+pub(crate) unsafe fn fill<const COUNT: usize>(
+    parts: [(*mut c_void, u64, &[u8], &str); COUNT],
+) -> Result<(), Failure> {
+    let given = || parts.iter().filter(|(to, ..)| !to.is_null());
+    given().try_for_each(|(_, size, bytes, field)| check_size(bytes, *size, field))?;
+    // SAFETY: the same contract; there is room.
+    given().for_each(|(to, _, bytes, _)| unsafe { copy(bytes, *to) });
+    Ok(())
+}
+
+/// # Safety
+/// The pointers are null or valid, with as many items.
+pub(crate) unsafe fn read_lights(lights: *const ArealightLight, count: u32) -> Result<Vec<Light>, Failure> {
     // SAFETY: the same contract.
-    lights.iter().enumerate().map(|(index, light)| unsafe { read_light(index, light) }).collect()
+    unsafe {
+        let lights = arguments::array(lights, count as usize, "lights")?.iter().enumerate();
+        lights.map(|(index, light)| read_light(index, light)).collect()
+    }
 }
 
 /// # Safety
@@ -179,10 +168,8 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
     let radius = light.radius;
     let error = f64::from(light.cluster_error);
     if !(error >= 0.0 && error.is_finite()) {
-        return Err(Failure::argument(format!(
-            "{}: {error} is not finite and 0 or more",
-            field("cluster_error")
-        )));
+        let message = format!("{}: {error} is not finite and 0 or more", field("cluster_error"));
+        return Err(Failure::argument(message));
     }
     // SAFETY: the same contract, here and below.
     let outlines = || unsafe { read_outlines(light, &field) };
@@ -204,31 +191,26 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
         AREALIGHT_LIGHT_DISK => LightShape::Disk { center, axis_u, axis_v },
         AREALIGHT_LIGHT_SPHERE => LightShape::Sphere { center, radius },
         AREALIGHT_LIGHT_TUBE => {
-            let ends = match light.ends {
-                AREALIGHT_TUBE_OPEN => TubeEnds::Open,
-                AREALIGHT_TUBE_FLAT => TubeEnds::Flat,
-                AREALIGHT_TUBE_ROUND => TubeEnds::Round,
-                other => return Err(wrong("ends", other, "AREALIGHT_TUBE_*")),
-            };
+            let ends = level(light.ends, &[TubeEnds::Open, TubeEnds::Flat, TubeEnds::Round], &field("ends"))?;
             LightShape::Tube { p0: center - axis_u, p1: center + axis_u, radius, ends }
         }
         other => return Err(wrong("kind", other, "AREALIGHT_LIGHT_*")),
     };
-    let textured = read_flag(light.textured, &field("textured"))?;
+    let textured = flag(light.textured, &field("textured"))?;
     // SAFETY: as above.
     let (name, numbers) = unsafe { (read_name(light.name), read_profile(light, &field)?) };
     let refused = |fault| LightError { index, name: name.clone(), fault };
     let rows = numbers.map(|numbers| numbers.chunks(row_length(light)).collect::<Vec<_>>());
     let profile = rows.map(|rows| Profile::new(&rows, light.profile_levels)).transpose().map_err(refused)?;
-    let has_opening = read_flag(light.has_opening, &field("has_opening"))?;
+    let has_opening = flag(light.has_opening, &field("has_opening"))?;
     let [opening_center, opening_u, opening_v] =
         [light.opening_center, light.opening_axis_u, light.opening_axis_v].map(DVec3::from_array);
-    let housed = has_opening && read_flag(light.opening_housed, &field("opening_housed"))?;
+    let housed = has_opening && flag(light.opening_housed, &field("opening_housed"))?;
     let opening = Opening { center: opening_center, axis_u: opening_u, axis_v: opening_v, housed };
     let mut made = Light {
         name,
         radiance: Vec3::from_array(light.radiance),
-        two_sided: read_flag(light.two_sided, &field("two_sided"))?,
+        two_sided: flag(light.two_sided, &field("two_sided"))?,
         texture: textured.then_some(LightTexture { layer: light.texture_layer, uvs }),
         profile,
         opening: has_opening.then_some(opening),
@@ -265,10 +247,8 @@ const MOST_VERTICES: usize = 1 << 24;
 
 fn check_count(count: usize, field: impl Fn() -> String) -> Result<(), Failure> {
     if count > MOST_VERTICES {
-        return Err(Failure::argument(format!(
-            "{}: {count} vertices, at most {MOST_VERTICES} a light",
-            field()
-        )));
+        let message = format!("{}: {count} vertices, at most {MOST_VERTICES} a light", field());
+        return Err(Failure::argument(message));
     }
     Ok(())
 }

@@ -1,43 +1,23 @@
 //! Vulkan's functions, from the two of the host that find them.
 
+use crate::arguments;
 use crate::failure::{ArealightResult, Failure};
 use crate::types::{ArealightHost, ArealightProcAddr};
 use arealight_vk::ash;
 use arealight_vk::ash::vk::{self, Handle as _};
-use std::ffi::{CStr, c_void};
+use std::ffi::{CStr, CString, c_void};
 
-/// Functions that the recorder calls: one that is missing is said here, not when it is called.
-const INSTANCE: [&CStr; 3] = [
-    c"vkGetPhysicalDeviceProperties",
-    c"vkGetPhysicalDeviceFormatProperties",
-    c"vkGetPhysicalDeviceImageFormatProperties",
-];
-const DEVICE: [&CStr; 24] = [
-    c"vkBindImageMemory",
-    c"vkCmdBindDescriptorSets",
-    c"vkCmdBindPipeline",
-    c"vkCmdClearColorImage",
-    c"vkCmdCopyBufferToImage",
-    c"vkCmdDispatch",
-    c"vkCmdPipelineBarrier",
-    c"vkCmdPushConstants",
-    c"vkCreateComputePipelines",
-    c"vkCreateDescriptorSetLayout",
-    c"vkCreateImage",
-    c"vkCreateImageView",
-    c"vkCreatePipelineLayout",
-    c"vkCreateSampler",
-    c"vkCreateShaderModule",
-    c"vkDestroyDescriptorSetLayout",
-    c"vkDestroyImage",
-    c"vkDestroyImageView",
-    c"vkDestroyPipeline",
-    c"vkDestroyPipelineLayout",
-    c"vkDestroySampler",
-    c"vkDestroyShaderModule",
-    c"vkGetImageMemoryRequirements",
-    c"vkUpdateDescriptorSets",
-];
+/// Functions that are called: one that is missing is said here, not when it is called.
+const INSTANCE: &str = "vkGetPhysicalDeviceProperties vkGetPhysicalDeviceFormatProperties
+    vkGetPhysicalDeviceImageFormatProperties vkGetPhysicalDeviceMemoryProperties";
+const DEVICE: &str = "vkAllocateDescriptorSets vkAllocateMemory vkBindBufferMemory vkBindImageMemory
+    vkCmdBindDescriptorSets vkCmdBindPipeline vkCmdClearColorImage vkCmdCopyBufferToImage vkCmdDispatch
+    vkCmdDispatchBase vkCmdDispatchIndirect vkCmdPipelineBarrier vkCmdPushConstants vkCmdUpdateBuffer
+    vkCreateBuffer vkCreateComputePipelines vkCreateDescriptorPool vkCreateDescriptorSetLayout vkCreateImage
+    vkCreateImageView vkCreatePipelineLayout vkCreateSampler vkCreateShaderModule vkDestroyBuffer
+    vkDestroyDescriptorPool vkDestroyDescriptorSetLayout vkDestroyImage vkDestroyImageView vkDestroyPipeline
+    vkDestroyPipelineLayout vkDestroySampler vkDestroyShaderModule vkFreeMemory vkGetBufferMemoryRequirements
+    vkGetImageMemoryRequirements vkMapMemory vkUnmapMemory vkUpdateDescriptorSets";
 
 /// The function tables of the host's instance and device.
 ///
@@ -47,23 +27,20 @@ const DEVICE: [&CStr; 24] = [
 /// # Errors
 /// [`Failure`] names a handle that is null, or the function that was not found.
 pub unsafe fn load(host: &ArealightHost) -> Result<(ash::Instance, ash::Device), Failure> {
-    for (handle, name) in [
-        (host.instance, "host.instance"),
-        (host.physical_device, "host.physical_device"),
-        (host.device, "host.device"),
-    ] {
-        if handle.is_null() {
-            return Err(Failure::argument(format!("{name}: is null")));
-        }
-    }
+    arguments::refuse_null([
+        (host.instance.is_null(), "host.instance"),
+        (host.physical_device.is_null(), "host.physical_device"),
+        (host.device.is_null(), "host.device"),
+    ])?;
     let find_instance = finder(host.get_instance_proc_addr, host.instance, "host.get_instance_proc_addr")?;
     let find_device = finder(host.get_device_proc_addr, host.device, "host.get_device_proc_addr")?;
     for (find, names, field) in [
-        (&find_instance as &dyn Fn(&CStr) -> *const c_void, &INSTANCE[..], "get_instance_proc_addr"),
-        (&find_device, &DEVICE[..], "get_device_proc_addr"),
+        (&find_instance as &dyn Fn(&CStr) -> *const c_void, INSTANCE, "get_instance_proc_addr"),
+        (&find_device, DEVICE, "get_device_proc_addr"),
     ] {
-        if let Some(missing) = names.iter().find(|name| find(name).is_null()) {
-            let message = format!("host.{field}: does not find {}", missing.to_string_lossy());
+        let is_missing = |name: &&str| CString::new(*name).is_ok_and(|name| find(&name).is_null());
+        if let Some(missing) = names.split_whitespace().find(is_missing) {
+            let message = format!("host.{field}: does not find {missing}");
             return Err(Failure::new(ArealightResult::ErrorMissingFeature, message));
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
-use crate::options::{level, shade_options};
+use crate::options::{flag, level, shade_options};
 use crate::pass::{bound, given, host_module, read_frame, read_resources, sampled, set_layout, stored};
 use crate::types::{
     ArealightBuffer, ArealightFrame, ArealightImage, ArealightModule, ArealightPassOptions,
@@ -53,7 +53,7 @@ pub struct ArealightMediumResources {
 
 /// A frame of a medium's pass.
 #[repr(C)]
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightMediumFrame {
     /// That of the shade pass, of a perspective camera, with `position_from_clip`; its size, camera, matrix
     /// and lights count.
@@ -116,9 +116,9 @@ fn medium_options(shade: ShadeOptions, medium: &ArealightMediumOptions) -> Resul
         shadow_rays,
         one_light,
         samples: medium.samples,
-        by_image: level(medium.by_image, &[false, true], "medium.by_image")?,
-        jitter: level(medium.jitter, &[false, true], "medium.jitter")?,
-        fill_hidden: level(medium.fill_hidden, &[false, true], "medium.fill_hidden")?,
+        by_image: flag(medium.by_image, "medium.by_image")?,
+        jitter: flag(medium.jitter, "medium.jitter")?,
+        fill_hidden: flag(medium.fill_hidden, "medium.fill_hidden")?,
         from_depth: shade.from_depth,
         format: shade.format,
         quality: shade.quality,
@@ -160,7 +160,7 @@ pub unsafe extern "C" fn arealight_medium_pass_write_set(
         let pass = &handles::borrow(pass, "pass")?.pass;
         let arealight = handles::borrow(arealight, "arealight")?;
         arguments::refuse_null([(set == 0, "set")])?;
-        let shade = read_resources(arealight, arguments::read(shade, "shade")?)?;
+        let shade = read_resources(arealight.table_resource()?, arguments::read(shade, "shade")?)?;
         let resources = arguments::read(resources, "resources")?;
         let blockers = given(resources.blocker_nodes).zip(given(resources.blocker_triangles));
         let resources = MediumResources {

@@ -26,45 +26,33 @@ pub(crate) fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptio
             return Err(Failure::argument(format!("options.surfaces: {others} are what lights need")));
         }
     };
+    macro_rules! of {
+        ($field:ident, $($level:expr),*) => {
+            level(options.$field, &[$($level),*], concat!("options.", stringify!($field)))?
+        };
+    }
     let quality = Quality {
-        form_factor: level(
-            options.form_factor,
-            &[FormFactor::Exact, FormFactor::Difference],
-            "options.form_factor",
-        )?,
-        horizon: level(options.horizon, &[Horizon::Cosine, Horizon::Both], "options.horizon")?,
+        form_factor: of!(form_factor, FormFactor::Exact, FormFactor::Difference),
+        horizon: of!(horizon, Horizon::Cosine, Horizon::Both),
         specular_lobes: specular_lobes_of(options.specular_lobes, "options.specular_lobes")?,
-        lobes: level(options.lobes, &[Lobes::Table, Lobes::Formula], "options.lobes")?,
-        footprint: level(options.footprint, &[Footprint::Kernel, Footprint::Mips], "options.footprint")?,
+        lobes: of!(lobes, Lobes::Table, Lobes::Formula),
+        footprint: of!(footprint, Footprint::Kernel, Footprint::Mips),
     };
     Ok(ShadeOptions {
         surfaces,
         quality,
-        from_depth: level(options.position, &[false, true], "options.position")?,
-        g_buffer: level(
-            options.g_buffer,
-            &[
-                GBufferLayout::Arealight,
-                GBufferLayout::Unreal,
-                GBufferLayout::Unity,
-                GBufferLayout::Octahedral,
-            ],
-            "options.g_buffer",
-        )?,
-        output: level(options.output, &[Output::Overwrite, Output::Add], "options.output")?,
-        separate_lobes: level(options.radiance_images, &[false, true], "options.radiance_images")?,
-        format: level(
-            options.radiance_format,
-            &[RadianceFormat::Rgba32Float, RadianceFormat::Rgba16Float],
-            "options.radiance_format",
-        )?,
+        from_depth: of!(position, false, true),
+        g_buffer: level(options.g_buffer, &LAYOUTS, "options.g_buffer")?,
+        output: of!(output, Output::Overwrite, Output::Add),
+        separate_lobes: of!(radiance_images, false, true),
+        format: of!(radiance_format, RadianceFormat::Rgba32Float, RadianceFormat::Rgba16Float),
         shadow_rays: level(options.shadow_rays, &RAYS, "options.shadow_rays")?,
-        orthographic: level(options.camera, &[false, true], "options.camera")?,
-        rectangle: level(options.rectangle, &[false, true], "options.rectangle")?,
+        orthographic: of!(camera, false, true),
+        rectangle: of!(rectangle, false, true),
         texels_per_pixel: options.texels_per_pixel.max(1),
         samples: options.samples.max(1),
-        stencil: level(options.stencil, &[false, true], "options.stencil")?,
-        light_counts: level(options.light_counts, &[false, true], "options.light_counts")?,
+        stencil: of!(stencil, false, true),
+        light_counts: of!(light_counts, false, true),
     })
 }
 
@@ -73,72 +61,42 @@ pub(crate) fn specular_lobes_of(number: u32, field: &str) -> Result<SpecularLobe
     level(number, &[SpecularLobes::One, SpecularLobes::Two, SpecularLobes::HalfVectors], field)
 }
 
+/// By AREALIGHT_G_BUFFER_*.
+const LAYOUTS: [GBufferLayout; 4] =
+    [GBufferLayout::Arealight, GBufferLayout::Unreal, GBufferLayout::Unity, GBufferLayout::Octahedral];
+
 /// How many shadow rays a pixel may have.
 const RAYS: [u32; ShadeOptions::MOST_SHADOW_RAYS as usize + 1] = [0, 1, 2, 3, 4];
 
+/// 0 or 1 as they are meant.
+pub(crate) fn flag(number: u32, field: &str) -> Result<bool, Failure> {
+    level(number, &[false, true], field)
+}
+
 /// The level that a number stands for: its place among them.
 pub(crate) fn level<T: Copy>(number: u32, levels: &[T], field: &str) -> Result<T, Failure> {
-    levels
-        .get(number as usize)
-        .copied()
-        .ok_or_else(|| Failure::argument(format!("{field}: {number} must be from 0 to {}", levels.len() - 1)))
+    let wrong = || Failure::argument(format!("{field}: {number} must be from 0 to {}", levels.len() - 1));
+    levels.get(number as usize).copied().ok_or_else(wrong)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constants as c;
+    use crate::constants::*;
 
     #[test]
     fn constants_are_those_of_the_vocabulary() {
-        for (number, effect) in [
-            (c::AREALIGHT_EFFECT_DIFFUSE, Effects::DIFFUSE),
-            (c::AREALIGHT_EFFECT_GLOSSY, Effects::GLOSSY),
-            (c::AREALIGHT_EFFECT_TWO_SIDED, Effects::TWO_SIDED),
-            (c::AREALIGHT_EFFECT_SPECULAR_INPUT, Effects::SPECULAR_INPUT),
-            (c::AREALIGHT_EFFECT_POLYGON, Effects::POLYGON),
-            (c::AREALIGHT_EFFECT_TEXTURED, Effects::TEXTURED),
-            (c::AREALIGHT_EFFECT_ELLIPSE, Effects::ELLIPSE),
-            (c::AREALIGHT_EFFECT_SPHERE, Effects::SPHERE),
-            (c::AREALIGHT_EFFECT_TUBE, Effects::TUBE),
-            (c::AREALIGHT_EFFECT_MESH, Effects::MESH),
-            (c::AREALIGHT_EFFECT_TEXTURED_ELLIPSE, Effects::TEXTURED_ELLIPSE),
-            (c::AREALIGHT_EFFECT_COAT, Effects::COAT),
-            (c::AREALIGHT_EFFECT_COAT_NORMAL, Effects::COAT_NORMAL),
-            (c::AREALIGHT_EFFECT_COUPLED, Effects::COUPLED),
-            (c::AREALIGHT_EFFECT_COUPLED_BY_ALBEDO, Effects::COUPLED_BY_ALBEDO),
-            (c::AREALIGHT_EFFECT_COAT_BY_ALBEDO, Effects::COAT_BY_ALBEDO),
-            (c::AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS, Effects::DIFFUSE_ROUGHNESS),
-            (c::AREALIGHT_EFFECT_ANISOTROPY, Effects::ANISOTROPY),
-            (c::AREALIGHT_EFFECT_SHEEN, Effects::SHEEN),
-            (c::AREALIGHT_EFFECT_MULTIPLE_SCATTERING, Effects::MULTIPLE_SCATTERING),
-            (c::AREALIGHT_EFFECT_TRANSMISSION, Effects::TRANSMISSION),
-            (c::AREALIGHT_EFFECT_THIN_FILM, Effects::THIN_FILM),
-            (c::AREALIGHT_EFFECT_GLASS, Effects::GLASS),
-            (c::AREALIGHT_EFFECT_PROFILE, Effects::PROFILE),
-            (c::AREALIGHT_EFFECT_OPENING, Effects::OPENING),
-            (c::AREALIGHT_EFFECT_LINKED, Effects::LINKED),
-            (c::AREALIGHT_EFFECT_AZIMUTH, Effects::AZIMUTH),
-        ] {
-            assert_eq!(number, effect.bits(), "{effect}");
-        }
-        let options = |form_factor, horizon, footprint| ArealightPassOptions {
-            form_factor,
-            horizon,
-            footprint,
-            ..ArealightPassOptions::default()
+        let made = |form_factor, horizon, footprint| {
+            let zero = ArealightPassOptions::default();
+            shade_options(&ArealightPassOptions { form_factor, horizon, footprint, ..zero }).unwrap()
         };
-        let made = |options: ArealightPassOptions| shade_options(&options).unwrap().quality;
-        let quality = made(options(
-            c::AREALIGHT_FORM_FACTOR_DIFFERENCE,
-            c::AREALIGHT_HORIZON_BOTH,
-            c::AREALIGHT_FOOTPRINT_MIPS,
-        ));
-        assert_eq!((quality.form_factor, quality.horizon), (FormFactor::Difference, Horizon::Both));
-        assert_eq!(quality.footprint, Footprint::Mips);
+        let made_of =
+            made(AREALIGHT_FORM_FACTOR_DIFFERENCE, AREALIGHT_HORIZON_BOTH, AREALIGHT_FOOTPRINT_MIPS);
+        let Quality { form_factor, horizon, footprint, .. } = made_of.quality;
+        let expected = (FormFactor::Difference, Horizon::Both, Footprint::Mips);
+        assert_eq!((form_factor, horizon, footprint), expected);
         // Zero is the default of everything
-        let zero = shade_options(&ArealightPassOptions::default()).unwrap();
-        assert_eq!(zero, ShadeOptions::default());
+        assert_eq!(made(0, 0, 0), ShadeOptions::default());
     }
 
     #[test]

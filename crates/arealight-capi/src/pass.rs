@@ -1,12 +1,9 @@
 //! The shade pass.
 
-use crate::constants::{
-    AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, AREALIGHT_DESCRIPTORS_PUSHED, AREALIGHT_DESCRIPTORS_SETS,
-};
 use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
 use crate::lights::read_summary;
-use crate::options::{shade_options, tile_options};
+use crate::options::{level, shade_options, tile_options};
 use crate::types::{
     ArealightBuffer, ArealightFrame, ArealightImage, ArealightModule, ArealightPassOptions,
     ArealightResources, ArealightSetLayout, ArealightTileMemory, ArealightViewport,
@@ -22,13 +19,7 @@ use std::ffi::c_void;
 
 /// A shade pass, specialised for surfaces and a quality.
 pub struct ArealightPass {
-    pass: ShadePass,
-}
-
-impl ArealightPass {
-    pub(crate) fn shade_pass(&self) -> &ShadePass {
-        &self.pass
-    }
+    pub(crate) pass: ShadePass,
 }
 
 /// Makes a pass. Its pipelines are made when the first frame is recorded whose lights need them, or ahead by
@@ -42,8 +33,24 @@ pub unsafe extern "C" fn arealight_pass_create(
     options: *const ArealightPassOptions,
     out: *mut *mut ArealightPass,
 ) -> ArealightResult {
-    // SAFETY: the same contract; the pass is the host's to destroy.
-    call(|| unsafe { create(arealight, options, out) })
+    // SAFETY: the caller vouches for the pointers and the module, and says that its device has the extension.
+    call(|| unsafe {
+        arguments::write(out, std::ptr::null_mut(), "out")?;
+        let arealight = handles::borrow(arealight, "arealight")?;
+        let options = arguments::read(options, "options")?;
+        let ways = [Descriptors::Sets, Descriptors::LightOffsets, Descriptors::Pushed];
+        let descriptors = level(options.descriptors, &ways, "options.descriptors")?;
+        let (module, _) = host_module(&options.module, false)?;
+        let tiles = tile_options(options);
+        if tiles.is_some() && module.is_some() {
+            let why = "must be 0, since tiles are not classified by a G-buffer of the host's own";
+            return Err(Failure::argument(format!("options.tile_capacity: {why}")));
+        }
+        let table_size = arealight.table_size();
+        let info = ShadePassInfo { tiles, table_size, descriptors, module, ..shade_options(options)?.into() };
+        let pass = ShadePass::new(arealight.context(), info)?;
+        arguments::write(out, handles::give(ArealightPass { pass }), "out")
+    })
 }
 
 /// A module of the host's, if it has one, and the layout of set 1.
@@ -69,44 +76,6 @@ pub(crate) unsafe fn host_module(module: &ArealightModule, reads_set: bool) -> R
     let words = unsafe { arguments::array(words, size / 4, "module.words") }?.to_vec();
     let layout = (host_set_layout != 0).then(|| vk::DescriptorSetLayout::from_raw(host_set_layout));
     Ok((Some(words), layout))
-}
-
-/// # Safety
-/// Pointers are null or valid.
-unsafe fn create(
-    arealight: *const Arealight,
-    options: *const ArealightPassOptions,
-    out: *mut *mut ArealightPass,
-) -> Result<(), Failure> {
-    // SAFETY: the same contract, here and below.
-    let (arealight, options) = unsafe {
-        arguments::write(out, std::ptr::null_mut(), "out")?;
-        (handles::borrow(arealight, "arealight")?, arguments::read(options, "options")?)
-    };
-    let descriptors = match options.descriptors {
-        AREALIGHT_DESCRIPTORS_SETS => Descriptors::Sets,
-        AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS => Descriptors::LightOffsets,
-        AREALIGHT_DESCRIPTORS_PUSHED => Descriptors::Pushed,
-        other => return Err(Failure::argument(format!("options.descriptors: {other} must be from 0 to 2"))),
-    };
-    // SAFETY: as above.
-    let (module, _) = unsafe { host_module(&options.module, false) }?;
-    let tiles = tile_options(options);
-    if tiles.is_some() && module.is_some() {
-        let why = "must be 0, since tiles are not classified by a G-buffer of the host's own";
-        return Err(Failure::argument(format!("options.tile_capacity: {why}")));
-    }
-    let info = ShadePassInfo {
-        tiles,
-        table_size: arealight.table_size(),
-        descriptors,
-        module,
-        ..shade_options(options)?.into()
-    };
-    // SAFETY: the host vouches for the module, and says that its device has the extension.
-    let pass = unsafe { ShadePass::new(arealight.context(), info) }?;
-    // SAFETY: as above.
-    unsafe { arguments::write(out, handles::give(ArealightPass { pass }), "out") }
 }
 
 /// What descriptor sets of the pass are made with.
@@ -159,32 +128,34 @@ pub unsafe extern "C" fn arealight_pass_write_set(
         let pass = &handles::borrow(pass, "pass")?.pass;
         let arealight = handles::borrow(arealight, "arealight")?;
         arguments::refuse_null([(set == 0, "set")])?;
-        let resources = resources_of(pass, arealight, arguments::read(resources, "resources")?)?;
+        let resources = resources_of(pass, arealight, resources)?;
         Ok(pass.write_set(vk::DescriptorSet::from_raw(set), &resources)?)
     })
 }
 
 /// The host's resources of a pass.
-fn resources_of(
+///
+/// # Safety
+/// `resources` is null or valid.
+unsafe fn resources_of(
     pass: &ShadePass,
     arealight: &Arealight,
-    resources: &ArealightResources,
+    resources: *const ArealightResources,
 ) -> Result<ShadeResources, Failure> {
+    // SAFETY: the same contract.
+    let resources = unsafe { arguments::read(resources, "resources") }?;
     Ok(ShadeResources {
         lobe_horizons: pass.tiles().map(|_| buffer(resources.lobe_horizons)),
         tile_lists: pass.tiles().map(|_| buffer(resources.tile_lists)),
-        ..read_resources(arealight, resources)?
+        ..read_resources(arealight.table_resource()?, resources)?
     })
 }
 
 /// The host's resources but those of tiles.
 pub(crate) fn read_resources(
-    arealight: &Arealight,
+    table: Resource,
     resources: &ArealightResources,
 ) -> Result<ShadeResources, Failure> {
-    let table = arealight.table_resource().ok_or_else(|| {
-        Failure::argument("arealight: its table has no memory yet; call arealight_table_bind_memory first")
-    })?;
     let planes = Plane::ALL.map(|plane| (resources.planes[plane as usize], plane.name()));
     for (image, field) in planes.into_iter().chain([
         (resources.light_textures, "light_textures"),
@@ -258,16 +229,11 @@ pub unsafe extern "C" fn arealight_pass_tile_memory(
     height: u32,
     out: *mut ArealightTileMemory,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let needed = unsafe { handles::borrow(pass, "pass") }?.pass.tile_memory([width, height]);
-        let memory = ArealightTileMemory {
-            size: needed.map_or(0, |needed| needed.size),
-            usage: needed.map_or(0, |needed| needed.usage.as_raw()),
-            reserved: 0,
-        };
-        // SAFETY: as above.
-        unsafe { arguments::write(out, memory, "out") }
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let needed = handles::borrow(pass, "pass")?.pass.tile_memory([width, height]);
+        let (size, usage) = needed.map_or((0, 0), |needed| (needed.size, needed.usage.as_raw()));
+        arguments::write(out, ArealightTileMemory { size, usage, reserved: 0 }, "out")
     })
 }
 
@@ -312,7 +278,7 @@ pub unsafe extern "C" fn arealight_pass_record_pushed(
     call(|| unsafe {
         let pass = &handles::borrow(pass, "pass")?.pass;
         let arealight = handles::borrow(arealight, "arealight")?;
-        let resources = resources_of(pass, arealight, arguments::read(resources, "resources")?)?;
+        let resources = resources_of(pass, arealight, resources)?;
         let frame = read_frame_of(pass, arguments::read(frame, "frame")?)?;
         arguments::refuse_null([(command_buffer.is_null(), "command_buffer")])?;
         let command_buffer = vk::CommandBuffer::from_raw(command_buffer as u64);
@@ -325,17 +291,13 @@ pub unsafe extern "C" fn arealight_pass_record_pushed(
 ///
 /// # Safety
 /// As [`read_frame`].
-unsafe fn read_frame_of(pass: &ShadePass, frame: &ArealightFrame) -> Result<ShadeFrame, Failure> {
+pub(crate) unsafe fn read_frame_of(pass: &ShadePass, frame: &ArealightFrame) -> Result<ShadeFrame, Failure> {
     let options = pass.options();
-    let stencil = frame.stencil_compare_mask | frame.stencil_reference;
+    let stencil = u64::from(frame.stencil_compare_mask | frame.stencil_reference);
     for (is_read, value, field) in [
         (options.shadow_rays > 0, u64::from(frame.seed), "seed: without shadow rays"),
         (pass.tiles().is_some(), frame.tile_lists.buffer, "tile_lists: without tiles"),
-        (
-            options.stencil,
-            u64::from(stencil),
-            "stencil_compare_mask and stencil_reference: without a stencil",
-        ),
+        (options.stencil, stencil, "stencil_compare_mask and stencil_reference: without a stencil"),
     ] {
         if !is_read && value != 0 {
             return Err(Failure::argument(format!("frame.{field} in the pass must be 0, not {value}")));

@@ -2,7 +2,7 @@
 
 use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
-use crate::lights::{check_size, copy};
+use crate::lights::fill;
 use crate::options::{level, shade_options};
 use crate::pass::{ArealightPass, bound, given, host_module, read_frame, read_resources, set_layout, stored};
 use crate::types::{
@@ -22,7 +22,7 @@ use std::ffi::c_void;
 
 /// Triangles that block shadow rays, in a hierarchy of boxes, for hosts that have none of their own.
 pub struct ArealightBlockers {
-    blockers: Blockers,
+    pub(crate) blockers: Blockers,
 }
 
 /// Builds the hierarchy of triangles: nine numbers each, relative to the origin that lights are packed with,
@@ -40,25 +40,19 @@ pub unsafe extern "C" fn arealight_blockers_create(
     triangle_count: u32,
     out: *mut *mut ArealightBlockers,
 ) -> ArealightResult {
-    call(|| {
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
         let count = triangle_count as usize;
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let (numbers, alphas) = unsafe {
-            arguments::write(out, std::ptr::null_mut(), "out")?;
-            let alphas = if alphas.is_null() { &[] } else { arguments::array(alphas, count, "alphas")? };
-            (arguments::array(vertices, 9 * count, "vertices")?, alphas)
-        };
+        arguments::write(out, std::ptr::null_mut(), "out")?;
+        let alphas = if alphas.is_null() { &[] } else { arguments::array(alphas, count, "alphas")? };
+        let numbers = arguments::array(vertices, 9 * count, "vertices")?;
         let triangle = |numbers: &[f32]| [0, 3, 6].map(|first| Vec3::from_slice(&numbers[first..]));
         let triangles: Vec<[Vec3; 3]> = numbers.chunks_exact(9).map(triangle).collect();
         let number = |index: u32| alphas.get(index as usize).copied().unwrap_or_default();
+        let refused = |error: BlockerError| Failure::argument(error.to_string());
         let blockers = Blockers::new(&triangles).map_err(refused)?.with_alpha(number);
-        // SAFETY: as above.
-        unsafe { arguments::write(out, handles::give(ArealightBlockers { blockers }), "out") }
+        arguments::write(out, handles::give(ArealightBlockers { blockers }), "out")
     })
-}
-
-fn refused(error: BlockerError) -> Failure {
-    Failure::argument(error.to_string())
 }
 
 /// Copies the hierarchy into arrays of the host, which uploads them to its buffers. With null arrays, only
@@ -71,30 +65,17 @@ pub unsafe extern "C" fn arealight_blockers_read(
     blockers: *const ArealightBlockers,
     arrays: *mut ArealightBlockerArrays,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let (blockers, mut sizes) = unsafe {
-            (
-                &handles::borrow(blockers, "blockers")?.blockers,
-                *arguments::read(arrays.cast_const(), "arrays")?,
-            )
-        };
-        let parts: [(*mut c_void, u64, &[u8], &str); 2] = [
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let blockers = &handles::borrow(blockers, "blockers")?.blockers;
+        let mut sizes = *arguments::read(arrays.cast_const(), "arrays")?;
+        let parts: [(_, _, &[u8], _); 2] = [
             (sizes.nodes, sizes.nodes_size, cast_slice(&blockers.nodes), "arrays.nodes_size"),
             (sizes.triangles, sizes.triangles_size, cast_slice(&blockers.triangles), "arrays.triangles_size"),
         ];
         [sizes.nodes_size, sizes.triangles_size] = parts.map(|(_, _, bytes, _)| bytes.len() as u64);
-        // SAFETY: as above.
-        unsafe { arguments::write(arrays, sizes, "arrays") }?;
-        let given = || parts.into_iter().filter(|(to, ..)| !to.is_null());
-        for (_, size, bytes, field) in given() {
-            check_size(bytes, size, field)?;
-        }
-        for (to, _, bytes, _) in given() {
-            // SAFETY: as above; there is room.
-            unsafe { copy(bytes, to) };
-        }
-        Ok(())
+        arguments::write(arrays, sizes, "arrays")?;
+        fill(parts)
     })
 }
 
@@ -139,9 +120,12 @@ pub unsafe extern "C" fn arealight_shadow_pass_create(
     })
 }
 
+/// By AREALIGHT_SHADOW_FILTER_*.
+pub(crate) const FILTERS: [ShadowFilter; 2] = [ShadowFilter::Off, ShadowFilter::Gather];
+
 fn shadow_options(options: &ArealightShadowOptions) -> Result<ShadowOptions, Failure> {
     Ok(ShadowOptions {
-        filter: level(options.filter, &[ShadowFilter::Off, ShadowFilter::Gather], "options.filter")?,
+        filter: level(options.filter, &FILTERS, "options.filter")?,
         history: level(
             options.history,
             &[ShadowHistory::Off, ShadowHistory::Camera, ShadowHistory::MotionVectors],
@@ -163,11 +147,10 @@ pub unsafe extern "C" fn arealight_pass_shadow_picks_size(
     height: u32,
     out: *mut u64,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let size = unsafe { handles::borrow(pass, "pass") }?.shade_pass().picks_size([width, height]);
-        // SAFETY: as above.
-        unsafe { arguments::write(out, size, "out") }
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let size = handles::borrow(pass, "pass")?.pass.picks_size([width, height]);
+        arguments::write(out, size, "out")
     })
 }
 
@@ -219,7 +202,7 @@ pub unsafe extern "C" fn arealight_shadow_pass_write_set(
         let pass = &handles::borrow(pass, "pass")?.pass;
         let arealight = handles::borrow(arealight, "arealight")?;
         arguments::refuse_null([(set == 0, "set")])?;
-        let shade = read_resources(arealight, arguments::read(shade, "shade")?)?;
+        let shade = read_resources(arealight.table_resource()?, arguments::read(shade, "shade")?)?;
         let resources = read_shadow_resources(arguments::read(resources, "resources")?);
         Ok(pass.write_set(vk::DescriptorSet::from_raw(set), &shade, &resources)?)
     })
@@ -293,23 +276,19 @@ pub unsafe extern "C" fn arealight_shadow_pass_destroy(pass: *mut ArealightShado
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constants as c;
+    use crate::constants::*;
+    use std::ptr::{null, null_mut};
 
     #[test]
     fn constants_are_those_of_the_vocabulary() {
         let made = |filter, history| {
-            let ShadowOptions { filter, history, .. } =
-                shadow_options(&ArealightShadowOptions { filter, history, ..Default::default() }).unwrap();
-            (filter, history)
+            let options = ArealightShadowOptions { filter, history, ..Default::default() };
+            shadow_options(&options).map(|made| (made.filter, made.history)).unwrap()
         };
-        assert_eq!(
-            made(c::AREALIGHT_SHADOW_FILTER_GATHER, c::AREALIGHT_SHADOW_HISTORY_CAMERA),
-            (ShadowFilter::Gather, ShadowHistory::Camera)
-        );
-        assert_eq!(
-            made(c::AREALIGHT_SHADOW_FILTER_OFF, c::AREALIGHT_SHADOW_HISTORY_MOTION),
-            (ShadowFilter::Off, ShadowHistory::MotionVectors)
-        );
+        let found = made(AREALIGHT_SHADOW_FILTER_GATHER, AREALIGHT_SHADOW_HISTORY_CAMERA);
+        assert_eq!(found, (ShadowFilter::Gather, ShadowHistory::Camera));
+        let found = made(AREALIGHT_SHADOW_FILTER_OFF, AREALIGHT_SHADOW_HISTORY_MOTION);
+        assert_eq!(found, (ShadowFilter::Off, ShadowHistory::MotionVectors));
         let zero = ArealightShadowOptions::default();
         for (wrong, field) in [
             (ArealightShadowOptions { filter: 2, ..zero }, "options.filter"),
@@ -324,25 +303,14 @@ mod tests {
     #[test]
     fn blockers_are_copied_where_there_is_room() {
         let vertices = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-        let mut blockers = std::ptr::null_mut();
-        let mut sizes = ArealightBlockerArrays {
-            nodes: std::ptr::null_mut(),
-            triangles: std::ptr::null_mut(),
-            nodes_size: 0,
-            triangles_size: 0,
-        };
+        let (mut blockers, mut sizes) = (null_mut(), ArealightBlockerArrays::default());
         // SAFETY: the pointers are valid, and the arrays as large as they say.
         unsafe {
-            let wrong = [f32::NAN; 9];
-            assert_eq!(
-                arealight_blockers_create(wrong.as_ptr(), std::ptr::null(), 1, &raw mut blockers),
-                ArealightResult::ErrorArgument
-            );
+            let create =
+                |vertices: &[f32; 9], out| arealight_blockers_create(vertices.as_ptr(), null(), 1, out);
+            assert_eq!(create(&[f32::NAN; 9], &raw mut blockers), ArealightResult::ErrorArgument);
             assert!(blockers.is_null());
-            assert_eq!(
-                arealight_blockers_create(vertices.as_ptr(), std::ptr::null(), 1, &raw mut blockers),
-                ArealightResult::Ok
-            );
+            assert_eq!(create(&vertices, &raw mut blockers), ArealightResult::Ok);
             assert_eq!(arealight_blockers_read(blockers, &raw mut sizes), ArealightResult::Ok);
             assert_eq!((sizes.nodes_size, sizes.triangles_size), (32, 48));
             let mut triangles = [7.0_f32; 12];

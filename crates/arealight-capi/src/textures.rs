@@ -1,9 +1,9 @@
 //! Images that lights show: memory and sets are the host's, filtering is recorded here.
 
-use crate::constants::{AREALIGHT_WRAP_CLAMP, AREALIGHT_WRAP_MIRROR, AREALIGHT_WRAP_REPEAT};
-use crate::device::Arealight;
+use crate::device::{Arealight, memory_of};
 use crate::failure::{ArealightResult, Failure, call};
-use crate::lights::{read_flag, read_lights};
+use crate::lights::read_lights;
+use crate::options::{flag, level};
 use crate::pass::{sampled, set_layout};
 use crate::types::{ArealightImage, ArealightLight, ArealightMemory, ArealightSetLayout};
 use crate::{arguments, handles};
@@ -12,7 +12,7 @@ use arealight_vk::ash::vk::{self, Handle as _};
 use arealight_vk::{LightTextures, Resource, TextureUpdate};
 use glam::DVec2;
 use std::ffi::c_void;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard};
 
 /// The lights' images: all of one size, each with its mips and with what lobes see of it.
 #[repr(C)]
@@ -26,7 +26,7 @@ pub struct ArealightTextureOptions {
 
 /// What light textures need of the host.
 #[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ArealightTextureNeeds {
     /// Of the image.
     pub memory: ArealightMemory,
@@ -112,8 +112,7 @@ struct Setup {
 
 impl ArealightTextures {
     fn inner(&self) -> MutexGuard<'_, Inner> {
-        // What a panic leaves behind is still the image
-        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+        handles::lock(&self.inner)
     }
 }
 
@@ -136,19 +135,16 @@ pub unsafe extern "C" fn arealight_textures_create(
     options: *const ArealightTextureOptions,
     out: *mut *mut ArealightTextures,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let (arealight, options) = unsafe {
-            arguments::write(out, std::ptr::null_mut(), "out")?;
-            (handles::borrow(arealight, "arealight")?, arguments::read(options, "options")?)
-        };
+    // SAFETY: the caller vouches for the pointers, and destroys the textures.
+    call(|| unsafe {
+        arguments::write(out, std::ptr::null_mut(), "out")?;
+        let arealight = handles::borrow(arealight, "arealight")?;
+        let options = arguments::read(options, "options")?;
         let size = PyramidSize::new(options.side)
             .map_err(|error| Failure::argument(format!("options.side: {error}")))?;
-        // SAFETY: the textures are destroyed by the host, by the contract of arealight_textures_destroy.
-        let textures = unsafe { LightTextures::new(arealight.context(), size, options.layers) }?;
+        let textures = LightTextures::new(arealight.context(), size, options.layers)?;
         let made = ArealightTextures { inner: Mutex::new(Inner { textures, setup: None }) };
-        // SAFETY: as above.
-        unsafe { arguments::write(out, handles::give(made), "out") }
+        arguments::write(out, handles::give(made), "out")
     })
 }
 
@@ -161,30 +157,22 @@ pub unsafe extern "C" fn arealight_textures_needs(
     textures: *const ArealightTextures,
     out: *mut ArealightTextureNeeds,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let textures = &unsafe { handles::borrow(textures, "textures") }?.inner().textures;
-        let memory = textures.memory_requirements();
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let textures = &handles::borrow(textures, "textures")?.inner().textures;
         // A set's share of what those of all levels take
         let mut level = textures.level_pool_sizes();
         for size in &mut level {
             size.descriptor_count /= textures.level_sets();
         }
         let needs = ArealightTextureNeeds {
-            memory: ArealightMemory {
-                size: memory.size,
-                alignment: memory.alignment,
-                staging_size: 0,
-                memory_type_bits: memory.memory_type_bits,
-                reserved: 0,
-            },
+            memory: memory_of(textures.memory_requirements(), 0),
             level_set: set_layout(textures.level_set_layout(), &level),
             source_set: set_layout(textures.source_set_layout(), &textures.source_pool_sizes(1)),
             level_set_count: textures.level_sets(),
             reserved: 0,
         };
-        // SAFETY: as above.
-        unsafe { arguments::write(out, needs, "out") }
+        arguments::write(out, needs, "out")
     })
 }
 
@@ -200,15 +188,12 @@ pub unsafe extern "C" fn arealight_textures_setup(
     textures: *mut ArealightTextures,
     setup: *const ArealightTextureSetup,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let (textures, setup) =
-            unsafe { (handles::borrow(textures, "textures")?, arguments::read(setup, "setup")?) };
+    // SAFETY: the caller vouches for the pointers, memory, sets and command buffer.
+    call(|| unsafe {
+        let textures = handles::borrow(textures, "textures")?;
+        let setup = arguments::read(setup, "setup")?;
         arguments::refuse_reserved(setup.reserved, "setup.reserved")?;
-        // SAFETY: as above.
-        let sets = unsafe {
-            arguments::array(setup.level_sets, setup.level_set_count as usize, "setup.level_sets")?
-        };
+        let sets = arguments::array(setup.level_sets, setup.level_set_count as usize, "setup.level_sets")?;
         arguments::refuse_null([
             (setup.memory == 0, "setup.memory"),
             (sets.contains(&0), "setup.level_sets"),
@@ -229,14 +214,11 @@ pub unsafe extern "C" fn arealight_textures_setup(
         }
 
         let level_sets: Vec<_> = sets.iter().map(|set| vk::DescriptorSet::from_raw(*set)).collect();
-        // SAFETY: the caller vouches for memory, sets and command buffer.
-        unsafe {
-            if given.is_none() {
-                textures.bind_memory(vk::DeviceMemory::from_raw(setup.memory), setup.memory_offset)?;
-            }
-            textures.write_level_sets(&level_sets)?;
-            textures.record_clear(vk::CommandBuffer::from_raw(setup.command_buffer as u64));
+        if given.is_none() {
+            textures.bind_memory(vk::DeviceMemory::from_raw(setup.memory), setup.memory_offset)?;
         }
+        textures.write_level_sets(&level_sets)?;
+        textures.record_clear(vk::CommandBuffer::from_raw(setup.command_buffer as u64));
         *given = Some(Setup { place, level_sets });
         Ok(())
     })
@@ -253,13 +235,12 @@ pub unsafe extern "C" fn arealight_textures_write_source_set(
     set: u64,
     source: ArealightImage,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointer.
-        let inner = unsafe { handles::borrow(textures, "textures") }?.inner();
+    // SAFETY: the caller vouches for the pointer, the set and the image.
+    call(|| unsafe {
+        let inner = handles::borrow(textures, "textures")?.inner();
         arguments::refuse_null([(set == 0, "set")])?;
         inner.setup()?;
-        // SAFETY: the caller vouches for the set and the image.
-        Ok(unsafe { inner.textures.write_source_set(vk::DescriptorSet::from_raw(set), sampled(source)) }?)
+        Ok(inner.textures.write_source_set(vk::DescriptorSet::from_raw(set), sampled(source))?)
     })
 }
 
@@ -278,22 +259,16 @@ pub unsafe extern "C" fn arealight_textures_update(
     updates: *const ArealightTextureUpdate,
     update_count: u32,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let (inner, updates) = unsafe {
-            let textures = handles::borrow(textures, "textures")?;
-            (textures.inner(), arguments::array(updates, update_count as usize, "updates")?)
-        };
+    // SAFETY: the caller vouches for the pointers, the command buffer and the sets.
+    call(|| unsafe {
+        let inner = handles::borrow(textures, "textures")?.inner();
+        let updates = arguments::array(updates, update_count as usize, "updates")?;
         let setup = inner.setup()?;
         arguments::refuse_null([(command_buffer.is_null(), "command_buffer")])?;
-        let updates: Vec<_> = updates
-            .iter()
-            .enumerate()
-            .map(|(index, update)| read_update(index, update))
-            .collect::<Result<_, _>>()?;
+        let updates = updates.iter().enumerate().map(|(index, update)| read_update(index, update));
         let commands = vk::CommandBuffer::from_raw(command_buffer as u64);
-        // SAFETY: the caller vouches for the command buffer and the sets.
-        Ok(unsafe { inner.textures.record_update(commands, &setup.level_sets, &updates) }?)
+        let updates = updates.collect::<Result<Vec<_>, _>>()?;
+        Ok(inner.textures.record_update(commands, &setup.level_sets, &updates)?)
     })
 }
 
@@ -301,12 +276,7 @@ fn read_update(index: usize, update: &ArealightTextureUpdate) -> Result<TextureU
     let field = |name| format!("updates[{index}].{name}");
     arguments::refuse_reserved(update.reserved, &field("reserved"))?;
     arguments::refuse_null([(update.source_set == 0, &field("source_set"))])?;
-    let wrap = |wrap, name| match wrap {
-        AREALIGHT_WRAP_CLAMP => Ok(Wrap::Clamp),
-        AREALIGHT_WRAP_REPEAT => Ok(Wrap::Repeat),
-        AREALIGHT_WRAP_MIRROR => Ok(Wrap::Mirror),
-        other => Err(Failure::argument(format!("{}: {other} is no AREALIGHT_WRAP_*", field(name)))),
-    };
+    let wrap = |wrap, name| level(wrap, &[Wrap::Clamp, Wrap::Repeat, Wrap::Mirror], &field(name));
     let size = match update.part_size {
         [0.0, 0.0] => DVec2::ONE,
         size => DVec2::from_array(size),
@@ -321,9 +291,9 @@ fn read_update(index: usize, update: &ArealightTextureUpdate) -> Result<TextureU
             wrap: [wrap(update.wrap_u, "wrap_u")?, wrap(update.wrap_v, "wrap_v")?],
             divisor: if update.divisor == 0.0 { 1.0 } else { update.divisor },
             aspect: if update.aspect == 0.0 { 1.0 } else { update.aspect },
-            is_ellipse: read_flag(update.is_ellipse, &field("is_ellipse"))?,
+            is_ellipse: flag(update.is_ellipse, &field("is_ellipse"))?,
         },
-        decode_srgb: read_flag(update.decode_srgb, &field("decode_srgb"))?,
+        decode_srgb: flag(update.decode_srgb, &field("decode_srgb"))?,
     })
 }
 
@@ -336,17 +306,16 @@ pub unsafe extern "C" fn arealight_textures_image(
     textures: *const ArealightTextures,
     out: *mut ArealightImage,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let inner = unsafe { handles::borrow(textures, "textures") }?.inner();
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let inner = handles::borrow(textures, "textures")?.inner();
         inner.setup()?;
         let Resource::FilteredImage { view, layout } = inner.textures.resource() else {
             unreachable!("light textures are filtered")
         };
         let image =
             ArealightImage { view: view.as_raw(), layout: layout.as_raw().cast_unsigned(), reserved: 0 };
-        // SAFETY: as above.
-        unsafe { arguments::write(out, image, "out") }
+        arguments::write(out, image, "out")
     })
 }
 
@@ -360,13 +329,10 @@ pub unsafe extern "C" fn arealight_textures_check_lights(
     lights: *const ArealightLight,
     light_count: u32,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers.
-        let (inner, lights) = unsafe {
-            let textures = handles::borrow(textures, "textures")?;
-            (textures.inner(), read_lights(arguments::array(lights, light_count as usize, "lights")?)?)
-        };
-        Ok(inner.textures.check_lights(&lights)?)
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let inner = handles::borrow(textures, "textures")?.inner();
+        Ok(inner.textures.check_lights(&read_lights(lights, light_count)?)?)
     })
 }
 

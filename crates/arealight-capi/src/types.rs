@@ -52,7 +52,7 @@ pub struct ArealightTable {
 
 /// What memory an image of the library's needs.
 #[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ArealightMemory {
     /// VkMemoryRequirements of the image.
     pub size: u64,
@@ -185,7 +185,7 @@ pub struct ArealightSetLayout {
 /// A light of constant radiance, or a textured one, in world positions. Which fields are read depends on its
 /// kind.
 #[repr(C)]
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightLight {
     /// For messages, UTF-8; may be null.
     pub name: *const c_char,
@@ -293,7 +293,7 @@ pub struct ArealightLightSummary {
 /// Arrays of the host for packed lights, as the buffers of ArealightResources hold them; aligned to 4 bytes,
 /// null to ask for the sizes alone.
 #[repr(C)]
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightPackedLights {
     /// Where polygons and meshes go.
     pub lights: *mut c_void,
@@ -388,7 +388,7 @@ pub struct ArealightViewport {
 
 /// What differs from frame to frame.
 #[repr(C)]
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightFrame {
     /// How many pixels are shaded, from the first of the radiance image on, or from `offset`. The images may
     /// be larger.
@@ -430,7 +430,7 @@ pub struct ArealightFrame {
 /// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before
 /// another frame uses it, the host waits for the stages `TRANSFER`, `COMPUTE_SHADER` and `DRAW_INDIRECT`.
 #[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ArealightTileMemory {
     /// Bytes; 0 for a pass without tiles.
     pub size: u64,
@@ -475,7 +475,7 @@ pub struct ArealightShadowResources {
 
 /// A frame of a shadow pass.
 #[repr(C)]
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightShadowFrame {
     /// That of the shade pass. With a history it has `position_from_clip`, also where positions come from an
     /// image, and `seed` counts frames.
@@ -492,7 +492,7 @@ pub struct ArealightShadowFrame {
 /// Arrays of the host for blockers, as the buffers of ArealightShadowResources hold them; aligned to 4 bytes,
 /// null to ask for the sizes alone.
 #[repr(C)]
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightBlockerArrays {
     /// Where the hierarchy's nodes go.
     pub nodes: *mut c_void,

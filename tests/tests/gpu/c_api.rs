@@ -1,7 +1,9 @@
 //! The C library as a host uses and misuses it: each mistake has a result and a message that names it.
 
+use arealight_engine::host::HostError;
 use arealight_tests::c_library::prelude::*;
 use arealight_tests::prelude::*;
+use ash::vk::Handle as _;
 
 #[test]
 fn hosts_that_are_none_are_refused_by_field() {
@@ -24,7 +26,7 @@ fn hosts_that_are_none_are_refused_by_field() {
         (
             ArealightHost { get_instance_proc_addr: None, ..host },
             ErrorArgument,
-            "host.get_instance_proc_addr",
+            "get_instance_proc_addr: is null",
         ),
         (ArealightHost { get_device_proc_addr: None, ..host }, ErrorArgument, "host.get_device_proc_addr"),
         (ArealightHost { instance: null_mut(), ..host }, ErrorArgument, "host.instance"),
@@ -35,6 +37,11 @@ fn hosts_that_are_none_are_refused_by_field() {
         out = null_mut::<Arealight>().wrapping_add(1);
         refused(create(&wrong, &mut out), result, words);
         assert!(out.is_null(), "what is not made is null");
+        let mut owner = null_mut::<ArealightAreaLights>().wrapping_add(1);
+        // SAFETY: as above.
+        let made = unsafe { arealight_area_lights_create(&raw const wrong, null(), &raw mut owner) };
+        refused(made, result, words);
+        assert!(owner.is_null());
     }
 
     // Tables that are none
@@ -48,6 +55,83 @@ fn hosts_that_are_none_are_refused_by_field() {
         // SAFETY: as above.
         refused(unsafe { arealight_create(&raw const host, &raw const wrong, &raw mut out) }, result, words);
     }
+}
+
+#[test]
+fn area_lights_say_what_they_cannot_do() {
+    use ArealightResult::{ErrorArgument, ErrorLight};
+    let (host, mut made, words) = (no_host(), null_mut(), [0_u32; 4]);
+    let zero = ArealightPassOptions::default();
+    let module = ArealightModule { words: words.as_ptr(), size: 16, host_set_layout: 0 };
+    let with = |options| ArealightAreaLightsInfo { options, ..NO_INFO };
+    for (wrong, words) in [
+        (ArealightAreaLightsInfo { frames_in_flight: 9, ..NO_INFO }, "frames_in_flight: 9 must be"),
+        (ArealightAreaLightsInfo { shadow_filter: 2, ..NO_INFO }, "info.shadow_filter: 2 must be"),
+        (
+            with(ArealightPassOptions { descriptors: 1, ..zero }),
+            "options.descriptors and options.module: must be 0",
+        ),
+        (with(ArealightPassOptions { module, ..zero }), "options.module: must be 0"),
+        (with(ArealightPassOptions { horizon: 2, ..zero }), "options.horizon: 2 must be"),
+    ] {
+        // SAFETY: the pointers are valid.
+        let result =
+            unsafe { arealight_area_lights_create(&raw const host, &raw const wrong, &raw mut made) };
+        refused(result, ErrorArgument, words);
+    }
+
+    let Some(engine) = TestEngine::new() else { return };
+    let library = CLibrary::new(&engine);
+    let (lamp, pixel) = (lamp(), OnePixel::new(&engine, Vec4::W, 0.5));
+    let (light, radiance) = (c_lamp(&lamp), radiance(&engine, [1; 2], Vec4::NAN));
+    let radiance = c_image(&radiance, Usage::COMPUTE_WRITE);
+    let nothing = ArealightResources::default();
+    let images = ArealightResources { planes: c_planes(&pixel), radiance, ..nothing };
+    let frame = ArealightFrame { width: 1, height: 1, ..NO_FRAME };
+    let uvs = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0];
+    let textured = ArealightLight { textured: 1, texture_coordinates: uvs.as_ptr(), ..light };
+    let flat = ArealightLight { vertex_count: 2, ..light };
+    let masked = ArealightFrame { stencil_reference: 1, ..frame };
+    library.with_area_lights(&NO_INFO, |owner| {
+        let never = engine.host().try_submit(|commands| {
+            let commands = commands.as_raw() as *mut c_void;
+            for (place, light, origin, frame, images, result, words) in [
+                (2, light, 0.0, frame, images, ErrorArgument, "place: 2 is not there: frames_in_flight is 2"),
+                (0, flat, 0.0, frame, images, ErrorLight, "lights[0]: vertices: 2 given"),
+                (0, light, f64::NAN, frame, images, ErrorArgument, "origin: "),
+                (0, light, 0.0, NO_FRAME, images, ErrorArgument, "size"),
+                (0, light, 0.0, masked, images, ErrorArgument, "without a stencil in the pass must be 0"),
+                (0, light, 0.0, frame, nothing, ErrorArgument, "position: is missing"),
+                (0, textured, 0.0, frame, images, ErrorArgument, "light_textures"),
+            ] {
+                let (images, frame, origin) = (&raw const images, &raw const frame, [origin; 3]);
+                // SAFETY: the pointers are null or valid, here and below; what is recorded is never run.
+                let shade = |commands, lights| unsafe {
+                    let origin = origin.as_ptr();
+                    arealight_area_lights_shade(owner, commands, place, lights, 1, origin, frame, images)
+                };
+                refused(shade(commands, &raw const light), result, words);
+                refused(shade(null_mut(), &raw const light), ErrorArgument, "command_buffer: is null");
+                refused(shade(commands, null()), ErrorArgument, "lights: is null");
+            }
+            // SAFETY: as above.
+            unsafe {
+                let mut blockers = null_mut();
+                good(arealight_blockers_create(null(), null(), 0, &raw mut blockers));
+                let set = arealight_area_lights_set_blockers(owner, blockers);
+                refused(set, ErrorArgument, "ArealightPassOptions.shadow_rays is 0");
+                good(arealight_blockers_destroy(blockers));
+            }
+            Err(HostError::NoDevice { found: vec![] })
+        });
+        never.unwrap_err();
+        // The twin: the next frame is shaded
+        let lit = library.shade(null_mut(), &pixel, &[light], ArealightImage::default(), Vec3::ONE);
+        assert!(lit.truncate().min_element() > 0.05, "{lit}");
+        made = owner;
+    });
+    // SAFETY: what is refused is not looked at.
+    refused(unsafe { arealight_area_lights_destroy(made) }, ErrorArgument, "was it destroyed?");
 }
 
 #[test]
@@ -65,6 +149,7 @@ fn null_objects_are_refused_and_destroying_nothing_is_fine() {
         refused(arealight_pass_create(arealight, null(), null_mut()), ErrorArgument, "out: is null");
         good(arealight_destroy(arealight));
         good(arealight_pass_destroy(pass));
+        good(arealight_area_lights_destroy(null_mut()));
     }
 }
 
@@ -131,15 +216,12 @@ fn calls_out_of_order_are_refused() {
         good(arealight_pass_prepare(pass, &raw const right));
     }
 
-    // A pass without a lobe would be black
-    let plain = ArealightPassOptions::default();
-    let lobeless = ArealightPassOptions { surfaces: AREALIGHT_EFFECT_SPECULAR_INPUT, ..plain };
-    let mut black = null_mut();
-    // SAFETY: the pointers are valid; nothing is made where an error is returned.
-    let made = unsafe { arealight_pass_create(arealight, &raw const lobeless, &raw mut black) };
-    refused(made, ErrorArgument, "surfaces: have no lobe");
-
+    let (plain, mut black) = (ArealightPassOptions::default(), null_mut());
     for (wrong, words) in [
+        (
+            ArealightPassOptions { surfaces: AREALIGHT_EFFECT_SPECULAR_INPUT, ..plain },
+            "surfaces: have no lobe",
+        ),
         (ArealightPassOptions { samples: 3, ..plain }, "samples: is 3"),
         (ArealightPassOptions { descriptors: 3, ..plain }, "options.descriptors: 3"),
         (ArealightPassOptions { stencil: 2, ..plain }, "options.stencil: 2"),

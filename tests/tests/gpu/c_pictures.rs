@@ -118,15 +118,7 @@ impl<'a> CTextures<'a> {
     fn new(engine: &'a TestEngine, library: &'a CLibrary<'a>) -> Self {
         let options = ArealightTextureOptions { side: 128, layers: 2 };
         let mut raw = null_mut();
-        let memory =
-            ArealightMemory { size: 0, alignment: 0, staging_size: 0, memory_type_bits: 0, reserved: 0 };
-        let mut needs = ArealightTextureNeeds {
-            memory,
-            level_set: ArealightSetLayout::default(),
-            source_set: ArealightSetLayout::default(),
-            level_set_count: 0,
-            reserved: 0,
-        };
+        let mut needs = ArealightTextureNeeds::default();
         // SAFETY: the pointers are valid; refused calls look behind none, here and below.
         unsafe {
             good(arealight_textures_create(library.arealight, &raw const options, &raw mut raw));
@@ -148,6 +140,8 @@ impl<'a> CTextures<'a> {
         // What is left out is named, and nothing can be used before
         let argument = ArealightResult::ErrorArgument;
         let right = setup(vk::CommandBuffer::from_raw(8));
+        // SAFETY: memory and sets are as was asked for, or refused.
+        let set_up = |setup: &ArealightTextureSetup| unsafe { arealight_textures_setup(raw, setup) };
         let mut image = ArealightImage::default();
         for (wrong, words) in [
             (ArealightTextureSetup { memory: 0, ..right }, "setup.memory: is null"),
@@ -155,8 +149,7 @@ impl<'a> CTextures<'a> {
             (ArealightTextureSetup { level_set_count: 1, ..right }, "setup.level_set_count: 1, but"),
             (ArealightTextureSetup { command_buffer: null_mut(), ..right }, "setup.command_buffer: is null"),
         ] {
-            // SAFETY: as above.
-            refused(unsafe { arealight_textures_setup(raw, &raw const wrong) }, argument, words);
+            refused(set_up(&wrong), argument, words);
         }
         let early = "call arealight_textures_setup first";
         // SAFETY: as above.
@@ -168,19 +161,13 @@ impl<'a> CTextures<'a> {
 
         // The first commands are never run
         let never = engine.host().try_submit(|commands| {
-            // SAFETY: memory and sets are as was asked for.
-            good(unsafe { arealight_textures_setup(raw, &raw const *Box::new(setup(commands))) });
+            good(set_up(&setup(commands)));
             Err(HostError::NoDevice { found: vec![] })
         });
         never.unwrap_err();
         let other = ArealightTextureSetup { memory_offset: 8, ..right };
-        // SAFETY: as above.
-        refused(unsafe { arealight_textures_setup(raw, &raw const other) }, argument, "other memory already");
-        let run = engine.host().submit(|commands| {
-            // SAFETY: as above.
-            good(unsafe { arealight_textures_setup(raw, &raw const *Box::new(setup(commands))) });
-        });
-        run.unwrap();
+        refused(set_up(&other), argument, "other memory already");
+        engine.host().submit(|commands| good(set_up(&setup(commands)))).unwrap();
         Self { raw, _pools: pools, _memory: memory, library, engine, needs }
     }
 
@@ -278,7 +265,7 @@ fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     let words = "memory: the table has other memory already";
     let refusal = library.record_upload(other.raw, &staging, vk::CommandBuffer::from_raw(8));
     refused(refusal, ArealightResult::ErrorArgument, words);
-    library.upload(&memory);
+    library.upload(memory);
 
     let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE);
     let textures = CTextures::new(&engine, &library);
@@ -289,6 +276,12 @@ fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     let c = shade(HOLES);
     assert_eq!(c, rust);
     assert!(c.min_element() > 0.05 && c.is_finite(), "{c}");
+    // So does what owns the rest; with other holes it does not
+    let diffuse = ArealightPassOptions { surfaces: AREALIGHT_EFFECT_DIFFUSE, ..Default::default() };
+    library.with_area_lights(&ArealightAreaLightsInfo { options: diffuse, ..NO_INFO }, |_| {
+        assert_eq!([HOLES; 3].map(shade), [c; 3]);
+        assert_ne!(shade([0.99, HOLES[1]]), c);
+    });
 
     // With a coat, whose image is one more
     let mut coated = OnePixel::new(&engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5);
@@ -323,19 +316,17 @@ fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     // SAFETY: as above.
     let result = unsafe { arealight_textures_check_lights(textures.raw, beyond.lights.as_ptr(), 2) };
     refused(result, ArealightResult::ErrorLight, "lights[1]: texture: layer 2");
-    // SAFETY: nothing is pending.
-    good(unsafe { arealight_pass_destroy(pass) });
-    // SAFETY: likewise.
-    good(unsafe { arealight_pass_destroy(coating) });
+    for pass in [pass, coating] {
+        // SAFETY: nothing is pending.
+        good(unsafe { arealight_pass_destroy(pass) });
+    }
 }
 
 #[test]
 fn c_pushes_what_sets_hold() {
     let Some(engine) = TestEngine::with_push_descriptors() else { return };
     let pixel = OnePixel::new(&engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5);
-    let library = CLibrary::new(&engine);
-    let memory = DeviceMemory::new(&engine, &library.table_memory());
-    library.upload(&memory);
+    let library = CLibrary::with_table(&engine);
     let textures = CTextures::new(&engine, &library);
     let given = CLights::new(HOLES);
     let shade =
@@ -349,19 +340,11 @@ fn c_pushes_what_sets_hold() {
     library.is_pushed.set(true);
     assert_eq!(shade(&library, pushing), by_set);
     // The twin: a pass with sets takes no pushed resources, and offsets need dynamic buffers
-    let (resources, frame) =
-        (ArealightResources::default(), ArealightFrame { width: 1, height: 1, ..NO_FRAME });
+    let frame = &ArealightFrame { width: 1, height: 1, ..NO_FRAME };
+    let (arealight, none) = (library.arealight, &ArealightResources::default());
     let commands = null_mut::<c_void>().wrapping_add(8);
     // SAFETY: the pointers are valid, and nothing is recorded where an error is returned.
-    let pushed = unsafe {
-        arealight_pass_record_pushed(
-            by_offsets,
-            library.arealight,
-            commands,
-            &raw const resources,
-            &raw const frame,
-        )
-    };
+    let pushed = unsafe { arealight_pass_record_pushed(by_offsets, arealight, commands, none, frame) };
     refused(pushed, ArealightResult::ErrorArgument, "resources: are given");
     let layout = set_layout(by_offsets);
     assert_eq!(layout.dynamic_storage_buffers, 3);

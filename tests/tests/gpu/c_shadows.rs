@@ -21,11 +21,14 @@ fn patch() -> ShadowPatch {
     }
 }
 
-/// The hierarchy's nodes and triangles, as a host in C gets them.
-fn blocker_arrays(triangles: &[[Vec3; 3]], alphas: Option<&[u32]>) -> [Vec<u32>; 2] {
+/// The hierarchy's nodes and triangles, as a host in C gets them, which does something with it, too.
+fn blocker_arrays(
+    triangles: &[[Vec3; 3]],
+    alphas: Option<&[u32]>,
+    act: impl FnOnce(*mut ArealightBlockers),
+) -> [Vec<u32>; 2] {
     let mut blockers = null_mut();
-    let mut arrays =
-        ArealightBlockerArrays { nodes: null_mut(), triangles: null_mut(), nodes_size: 0, triangles_size: 0 };
+    let mut arrays = ArealightBlockerArrays::default();
     // SAFETY: the pointers are valid, and the arrays as large as they say.
     unsafe {
         let (vertices, count) = (triangles.as_ptr().cast(), triangles.len() as u32);
@@ -35,6 +38,7 @@ fn blocker_arrays(triangles: &[[Vec3; 3]], alphas: Option<&[u32]>) -> [Vec<u32>;
         let mut made = [arrays.nodes_size, arrays.triangles_size].map(|size| vec![0_u32; size as usize / 4]);
         [arrays.nodes, arrays.triangles] = made.each_mut().map(|array| array.as_mut_ptr().cast());
         good(arealight_blockers_read(blockers, &raw mut arrays));
+        act(blockers);
         good(arealight_blockers_destroy(blockers));
         made
     }
@@ -84,9 +88,9 @@ impl<'a> CPasses<'a> {
     fn run(&self, patch: &ShadowPatch, seed: u32, medium: Option<(u32, &ArealightMediumFrame)>) -> Vec<Vec4> {
         let (engine, host) = (self.engine, self.engine.host());
         let lights: Vec<_> = patch.lights.iter().map(c_lamp).collect();
-        let lights = CLightBuffers::new(engine, &lights);
+        let packed = CLightBuffers::new(engine, &lights);
         let upload = |array: &Vec<u32>| host.storage_buffer("of C", array).unwrap();
-        let [nodes, triangles] = blocker_arrays(&patch.blockers, None).each_ref().map(upload);
+        let [nodes, triangles] = blocker_arrays(&patch.blockers, None, |_| ()).each_ref().map(upload);
         let mut picks_size = 0;
         // SAFETY: the pointers are valid.
         good(unsafe { arealight_pass_shadow_picks_size(self.shade, SIDE, SIDE, &raw mut picks_size) });
@@ -99,7 +103,7 @@ impl<'a> CPasses<'a> {
             Plane::BaseColor => Some(material.base_color.extend(material.metalness)),
             _ => None,
         });
-        let [unshadowed, shadowed] = [(); 2].map(|()| radiance(engine, [SIDE; 2], Vec4::NAN));
+        let [unshadowed, shadowed, owned] = [(); 3].map(|()| radiance(engine, [SIDE; 2], Vec4::NAN));
         let shadow = shadow_image(engine);
         let resources = ArealightResources {
             planes: Plane::ALL.map(|plane| {
@@ -108,7 +112,7 @@ impl<'a> CPasses<'a> {
             }),
             radiance: c_image(&unshadowed, Usage::COMPUTE_WRITE),
             shadow_picks: whole(&picks),
-            ..lights.resources()
+            ..packed.resources()
         };
         let of_shadows = ArealightShadowResources {
             shadow: c_image(&shadow, Usage::COMPUTE_WRITE),
@@ -121,17 +125,12 @@ impl<'a> CPasses<'a> {
             width: SIDE,
             height: SIDE,
             camera: patch.view.to_array(),
-            lights: lights.summary,
+            lights: packed.summary,
             seed,
             position_from_clip: FROM_CLIP.as_ptr(),
             ..NO_FRAME
         };
-        let shadow_frame = ArealightShadowFrame {
-            frame: &raw const frame,
-            host_set: 0,
-            origin_shift: [0.0; 3],
-            reserved: 0,
-        };
+        let shadow_frame = ArealightShadowFrame { frame: &raw const frame, ..Default::default() };
         let (shade_set, _shade_pool) = self.library.set(&set_layout(self.shade));
         let (shadow_set, _shadow_pool) = self.library.set(&self.shadow_layout());
         let (shade_set, shadow_set) = (shade_set.as_raw(), shadow_set.as_raw());
@@ -169,6 +168,21 @@ impl<'a> CPasses<'a> {
                 good(record(commands, &raw const shadow_frame));
             })
             .unwrap();
+        }
+        // What owns all this draws the same; its random numbers begin at 0
+        if seed == 0 && medium.is_none() {
+            let options = ArealightPassOptions { shadow_rays: 2, ..ArealightPassOptions::default() };
+            let shadow_filter = AREALIGHT_SHADOW_FILTER_GATHER;
+            let info = ArealightAreaLightsInfo { options, shadow_filter, ..NO_INFO };
+            let images = ArealightResources { radiance: c_image(&owned, Usage::COMPUTE_WRITE), ..resources };
+            self.library.with_area_lights(&info, |owner| {
+                // SAFETY: the pointers are valid.
+                let set =
+                    |blockers: *mut _| good(unsafe { arealight_area_lights_set_blockers(owner, blockers) });
+                blocker_arrays(&patch.blockers, None, set);
+                self.library.submit(null_mut(), &lights, &images, &frame);
+            });
+            assert_eq!(stored_in(&owned), stored_in(&shadowed));
         }
         if let Some(medium) = medium {
             self.put_before(&resources, &of_shadows, &frame, medium);
@@ -248,9 +262,7 @@ fn c_draws_the_shadows_that_rust_does_to_the_last_bit() {
     let options = ShadeOptions { shadow_rays: 2, ..ShadeOptions::default() };
     let rust = patch.run(&PatchPasses::new(engine, options, ShadowFilter::Gather));
 
-    let library = CLibrary::new(engine);
-    let memory = DeviceMemory::new(engine, &library.table_memory());
-    library.upload(&memory);
+    let library = CLibrary::with_table(engine);
     let passes = CPasses::new(engine, &library, 2);
     let c = passes.run(&patch, 0, None);
     let colors: Vec<Vec3> = c.iter().map(|texel| texel.truncate()).collect();
@@ -270,9 +282,7 @@ fn c_draws_the_shadows_that_rust_does_to_the_last_bit() {
 #[test]
 fn media_of_c_dim_and_scatter_what_is_known() {
     let Some(engine) = TestEngine::new() else { return };
-    let library = CLibrary::new(&engine);
-    let memory = DeviceMemory::new(&engine, &library.table_memory());
-    library.upload(&memory);
+    let library = CLibrary::with_table(&engine);
     let passes = CPasses::new(&engine, &library, 2);
     // A lamp is the upper half of what is seen from anywhere, before a wall or behind it
     let level = |side: f64, z: f64| {
@@ -283,8 +293,7 @@ fn media_of_c_dim_and_scatter_what_is_known() {
         let [a, b, c, d] = level(1e5, z).map(DVec3::as_vec3);
         ShadowPatch { blockers: vec![[a, b, c], [a, c, d]], lights: lights.clone(), ..patch() }
     };
-    // SAFETY: numbers and pointers alone.
-    let zeros: ArealightMediumFrame = unsafe { std::mem::zeroed() };
+    let zeros = ArealightMediumFrame::default();
     let clear = ArealightMediumFrame { froxels: [4, 3, 64], nearest: 1.0, farthest: 8.0, ..zeros };
     let seen = |frame: &_, rays, wall| passes.run(&behind(wall), 0, Some((rays, frame)))[0].truncate();
     let (before, away) = (seen(&clear, 0, 2.0), patch().view.length());
@@ -312,7 +321,7 @@ fn triangles_that_are_cut_out_have_the_numbers_of_a_host_in_c() {
     let plain = Blockers::new(&triangles).unwrap();
     let cut = plain.clone().with_alpha(|index| [0, 7][index as usize]);
     for (alphas, expected) in [(None, plain), (Some(&[0, 7][..]), cut.clone())] {
-        let [_, found] = blocker_arrays(&triangles, alphas);
+        let [_, found] = blocker_arrays(&triangles, alphas, |_| ());
         assert_eq!(found, bytemuck::cast_slice::<_, u32>(&expected.triangles));
         // The twin: only one of them has a number
         assert_eq!(found == bytemuck::cast_slice::<_, u32>(&cut.triangles), alphas.is_some());

@@ -26,15 +26,10 @@ fn compile(folder: &Path) -> PathBuf {
     let program = folder.join("host");
     let output = Command::new("c++")
         // Numbers as they are written, as in Rust: no product and sum is fused
-        .args([
-            "-std=c++14",
-            "-O1",
-            "-ffp-contract=off",
-            "-Wall",
-            "-Wextra",
-            "-Wno-missing-field-initializers",
-            "-Werror",
-        ])
+        .args(
+            "-std=c++14 -O1 -ffp-contract=off -Wall -Wextra -Wno-missing-field-initializers -Werror"
+                .split(' '),
+        )
         .arg("-I")
         .arg(root.join("crates/arealight-capi/include"))
         .arg(root.join("examples/cpp/host.cpp"))
@@ -154,7 +149,7 @@ fn differing(a: &[[f32; 3]], b: &[[f32; 3]]) -> usize {
 fn cpp_draws_what_rust_draws_to_the_last_bit() {
     let Some(engine) = TestEngine::new() else { return };
     let (cpp, rust) = (drawn(&[]), draw(&engine, &lights()));
-    assert_eq!(differing(&cpp, &rust), 0);
+    assert_eq!([differing(&cpp, &rust), differing(&drawn(&["--recorder"]), &rust)], [0; 2]);
 
     // The picture shows something, and a light that is a little brighter shows in it
     let lit = rust.iter().filter(|texel| texel.iter().any(|channel| *channel > 0.1)).count();
@@ -169,6 +164,7 @@ fn cpp_draws_what_rust_draws_to_the_last_bit() {
 fn cpp_draws_the_same_with_tiles() {
     let Some(engine) = TestEngine::new() else { return };
     let tiled = drawn(&["--tiles"]);
+    assert_eq!(differing(&tiled, &drawn(&["--tiles", "--recorder"])), 0);
     // Lights that are left out contribute nothing, which the quality level may round to 1e-6 of their
     // radiance: of all 16
     let is_same = |other: &[[f32; 3]]| {

@@ -172,9 +172,7 @@ fn a_bridge_of_the_host_reads_its_own_g_buffer(engine: &TestEngine) {
     assert_same(shaded, Surface { normal, roughness, base_color, metalness, f0: 0.04 }.shade(engine));
 
     // So it does through the C library, to the last bit
-    let (library, light) = (CLibrary::new(engine), lamp());
-    let memory = DeviceMemory::new(engine, &library.table_memory());
-    library.upload(&memory);
+    let (library, light) = (CLibrary::with_table(engine), lamp());
     let surfaces = options(GBufferLayout::Arealight).surfaces.bits();
     let module = shade_with_bridge();
     let make = |words: &[u32], size| {
