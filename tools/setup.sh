@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing on this machine, and says what and why:
 #
-#   tools/setup.sh run     what the command line needs: compilers, the Vulkan loader, a Vulkan driver
-#   tools/setup.sh window  that, and what windows need: X11's libraries; and what the tests of windows do: validation layers, a screen
-#                          that needs no monitor
+#   tools/setup.sh run     what the command line needs: compilers, the Vulkan loader, a Vulkan driver, X11's libraries for its window
+#   tools/setup.sh window  that, and what the tests of windows need: validation layers, a screen that needs no monitor
 #   tools/setup.sh test    that, and what the other tests need: shader compilers, a browser
 #
 # On Debian 12 as root it installs by apt-get. Anywhere else it says what to install. Running it again is free.
@@ -67,14 +66,12 @@ need g++ "compiles the library that reads compressed meshes" has_program c++
 need libc6-dev "the C library, for linking" has_c_library
 need libvulkan1 "the Vulkan loader" has_shared_library libvulkan.so.1
 need mesa-vulkan-drivers "a Vulkan driver; it computes on the CPU where there is no GPU" has_driver
+need libx11-xcb1 "the X11 library, for the viewer's window" has_shared_library libX11-xcb.so.1
+need libxcursor1 "its cursors" has_shared_library libXcursor.so.1
+need libxi6 "its input" has_shared_library libXi.so.6
+need libxkbcommon-x11-0 "its keyboards" has_shared_library libxkbcommon-x11.so.0
 if [[ "$mode" != run ]]; then
     need vulkan-validationlayers "finds wrong use of Vulkan in every GPU test" has_layer
-fi
-if [[ "$mode" == window || "$mode" == test ]]; then
-    need libx11-xcb1 "the X11 library" has_shared_library libX11-xcb.so.1
-    need libxcursor1 "its cursors" has_shared_library libXcursor.so.1
-    need libxi6 "its input" has_shared_library libXi.so.6
-    need libxkbcommon-x11-0 "its keyboards" has_shared_library libxkbcommon-x11.so.0
     need xvfb "a screen that needs no monitor" has_program Xvfb
 fi
 if [[ "$mode" == test ]]; then

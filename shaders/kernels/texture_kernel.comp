@@ -126,13 +126,9 @@ void main() {
     int mip = is_whole ? max(findMSB(finest / WHOLE), 0) : constants.level + 2;
     int side = textureSize(all_levels, mip).x;
     ivec2 step = is_whole ? ivec2(1) : min(ivec2(longer / stretch), side);
-    vec2 reach = 3.0 * height / stretch;
+    vec2 reach = is_whole ? vec2(1e9) : 3.0 * height / stretch;
     ivec2 first = ivec2(max(floor((places[0] - reach) * float(side)), 0.0)) / step * step;
     ivec2 end = ivec2(min(ceil((places[BLOCK - 1] + reach) * float(side)), float(side)));
-    if (is_whole) {
-        first = ivec2(0);
-        end = ivec2(side);
-    }
     bool is_one = step.x * step.y == 1; // most are: a loop less
     for (int y = first.y; y < end.y && is_one; y++) {
         for (int x = first.x; x < end.x; x++) {

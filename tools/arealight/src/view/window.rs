@@ -36,7 +36,7 @@ pub fn show(
     script: Option<&Script>,
     scene: &Path,
 ) -> Result<ExitCode, Failure> {
-    let events = EventLoop::new().map_err(|error| no_window(&error))?;
+    let events = events()?;
     let context = Context::new(events.owned_display_handle()).map_err(|error| no_window(&error))?;
     let mut desk = Desk {
         viewer,
@@ -62,6 +62,16 @@ pub fn show(
         Some(failure) => Err(failure),
         None => print(&format!("{} frames were shown\n", desk.frames)),
     }
+}
+
+/// A window system's events. Where one of its libraries is missing winit panics.
+fn events() -> Result<EventLoop<()>, Failure> {
+    let hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| ()));
+    let made = std::panic::catch_unwind(EventLoop::new);
+    std::panic::set_hook(hook);
+    let missing = "one of X11's libraries is missing: see tools/setup.sh";
+    made.map_err(|_| no_window(&missing))?.map_err(|error| no_window(&error))
 }
 
 fn no_window(why: &dyn Display) -> Failure {
