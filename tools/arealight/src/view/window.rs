@@ -207,7 +207,8 @@ impl Desk<'_> {
                 fast if fast < MOST_FRAME / 3 => (self.coarse - 1).max(1),
                 _ => self.coarse,
             };
-            self.rest = Instant::now() + REST;
+            // Later where a frame of every pixel takes long: nothing is heard meanwhile
+            self.rest = Instant::now() + REST.max(began.elapsed() * coarse.pow(2) / 8);
         }
         Ok(())
     }
