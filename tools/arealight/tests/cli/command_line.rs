@@ -234,9 +234,7 @@ fn effects_are_listed_with_what_needs_them() {
     assert_eq!(effect("tube")["required"], false);
     assert!(effect("tube")["reason"].is_null(), "{summary:#}");
     let told = printed(&run(folder.path(), &["effects", &scene("sweep.glb")]));
-    for words in
-        ["diffuse", "material '", "This scene's set: diffuse, glossy, coupled\n", "leaves out: two_sided"]
-    {
+    for words in ["diffuse", "material '", "This scene's set: diffuse, glossy, coupled\n", "out: two_sided"] {
         assert!(told.contains(words), "{words}: {told}");
     }
     assert!(!told.contains("\ntube"), "{told}");
