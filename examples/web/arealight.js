@@ -101,18 +101,25 @@ export function packLights(target, lights) {
     return { records, vertices: new Float32Array(vertices), count: lights.length };
 }
 
-// A picture of `size` pixels that is shaded again and again: its G-buffer, up to `capacity` lights, and its radiance.
+// A picture of `size` pixels that is shaded again and again: its G-buffer, up to `capacity` lights, and its radiance. `inputs` are all but
+// the radiance, of another frame that shows the same by another kernel.
 export class Frame {
-    constructor({ device, target, pipeline, table }, size, capacity) {
+    constructor({ device, target, pipeline, table }, size, capacity, inputs = null) {
         Object.assign(this, { device, target, pipeline, size });
         const { COPY_DST, STORAGE, UNIFORM } = GPUBufferUsage;
         const buffer = (usage, bytes) => device.createBuffer({ size: bytes, usage: usage | COPY_DST });
-        this.lights = buffer(STORAGE, capacity * target.structs.ArealightGpuLight.size);
-        this.vertices = buffer(STORAGE, capacity * 4 * 16);
-        this.constants = buffer(UNIFORM, target.structs.ShadeConstants.size);
         const texture = (usage) => device.createTexture({ size, format: "rgba32float", usage });
         const { TEXTURE_BINDING, COPY_SRC, STORAGE_BINDING } = GPUTextureUsage;
-        for (const name of ["position", "normal", "base_color"]) this[name] = texture(TEXTURE_BINDING | GPUTextureUsage.COPY_DST);
+        const image = () => texture(TEXTURE_BINDING | GPUTextureUsage.COPY_DST);
+        this.inputs = inputs ?? {
+            lights: buffer(STORAGE, capacity * target.structs.ArealightGpuLight.size),
+            vertices: buffer(STORAGE, capacity * 4 * 16),
+            constants: buffer(UNIFORM, target.structs.ShadeConstants.size),
+            position: image(),
+            normal: image(),
+            base_color: image(),
+        };
+        Object.assign(this, this.inputs);
         this.radiance = texture(STORAGE_BINDING | TEXTURE_BINDING | COPY_SRC);
         this.set = this.bind({
             table_image: table.createView({ dimension: "2d-array" }),
