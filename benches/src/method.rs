@@ -13,7 +13,7 @@ pub struct Method {
     pub name: &'static str,
     /// What it is.
     pub description: &'static str,
-    /// What it is held to: its own promises, or for a yardstick those of the best level.
+    /// What it is held to: its own promises, or for a yardstick those of the default level.
     pub promises: Promises,
     /// It is no way of ours: that it breaks promises is expected.
     pub is_yardstick: bool,
@@ -55,7 +55,7 @@ impl Method {
     }
 
     const fn yardstick(name: &'static str, description: &'static str, id: u32) -> Self {
-        let promises = Promises::DIFFERENCE;
+        let promises = Promises::EXACT;
         Self { name, description, promises, is_yardstick: true, quads_only: false, id }
     }
 

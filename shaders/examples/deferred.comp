@@ -25,6 +25,9 @@ void main() {
         return;
     }
     vec4 normal_roughness = texelFetch(g_buffer[1], pixel, 0);
+    if (normal_roughness.xyz == vec3(0.0)) {
+        return; // the background stays as it is
+    }
     vec4 base_color_metalness = texelFetch(g_buffer[2], pixel, 0);
     ArealightSurface surface;
     surface.position = texelFetch(g_buffer[0], pixel, 0).xyz;

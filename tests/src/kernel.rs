@@ -23,6 +23,10 @@ pub static LIGHT_REACH: Kernel = Kernel::new("light_reach", include_bytes!("../s
 pub static SELF_TEST: Kernel =
     Kernel::new("self_test", include_bytes!("../../benches/spirv/examples/self_test.spv"));
 
+/// The same of two lobes, with options that it does not depend on.
+pub static SELF_TEST_OF_TWO: Kernel =
+    Kernel::new("self_test_of_two", include_bytes!("../spirv/self_test_of_two.spv"));
+
 /// Directions drawn over polygons.
 pub static POLYGON_SAMPLING: Kernel =
     Kernel::new("polygon_sampling", include_bytes!("../spirv/polygon_sampling.spv"));

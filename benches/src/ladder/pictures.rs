@@ -74,8 +74,8 @@ fn effects_of(scene: &Scene) -> Effects {
 }
 
 /// Renders scenes, such as the frames of a film, by the two methods that stand beside the truth in a
-/// document: the default level, and a yardstick with the published table. The scenes share the first one's
-/// textures.
+/// document: the default level, and a yardstick with a table of published quality. The scenes share the first
+/// one's textures.
 pub fn beside_the_truth(
     host: &Host,
     table: &LightTable,

@@ -986,13 +986,14 @@ enum ArealightResult arealight_area_lights_shade(struct ArealightAreaLights *are
                                                  const struct ArealightFrame *frame,
                                                  const struct ArealightResources *resources);
 
-// Says what blocks shadow rays from the next frame on, relative to that frame's origin: by default nothing.
-// It is copied.
+// Says what blocks shadow rays from the next frame on, relative to an origin which those frames have, too:
+// by default nothing. It is copied.
 //
 // The host sees to it:
 // Pointers are null or valid.
 enum ArealightResult arealight_area_lights_set_blockers(struct ArealightAreaLights *area_lights,
-                                                        const struct ArealightBlockers *blockers);
+                                                        const struct ArealightBlockers *blockers,
+                                                        const double *origin);
 
 // Destroys it with all that it owns. Null is nothing.
 //

@@ -143,8 +143,8 @@ pub unsafe extern "C" fn arealight_area_lights_shade(
     })
 }
 
-/// Says what blocks shadow rays from the next frame on, relative to that frame's origin: by default nothing.
-/// It is copied.
+/// Says what blocks shadow rays from the next frame on, relative to an origin which those frames have, too:
+/// by default nothing. It is copied.
 ///
 /// # Safety
 /// Pointers are null or valid.
@@ -152,11 +152,13 @@ pub unsafe extern "C" fn arealight_area_lights_shade(
 pub unsafe extern "C" fn arealight_area_lights_set_blockers(
     area_lights: *mut ArealightAreaLights,
     blockers: *const ArealightBlockers,
+    origin: *const f64,
 ) -> ArealightResult {
     // SAFETY: the caller vouches for the pointers.
     call(|| unsafe {
         let mut area_lights = handles::lock(&handles::borrow(area_lights, "area_lights")?.inner);
-        Ok(area_lights.set_blockers(&handles::borrow(blockers, "blockers")?.blockers)?)
+        let blockers = &handles::borrow(blockers, "blockers")?.blockers;
+        Ok(area_lights.set_blockers(blockers, read_origin(origin)?)?)
     })
 }
 

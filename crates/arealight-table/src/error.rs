@@ -146,7 +146,7 @@ pub enum FileError {
 #[non_exhaustive]
 pub enum WriteError {
     /// The file's name does not say what to write.
-    #[error("extension `{extension}`: tables are written as .exr, .ktx2, .dds, .h (C), .glsl or .f32 (raw)")]
+    #[error("extension `{extension}`: tables are written as .exr, .ktx2, .dds, .h (C) or .f32 (raw)")]
     Extension {
         /// What the file's name ends with.
         extension: String,
@@ -158,12 +158,6 @@ pub enum WriteError {
         format: &'static str,
         /// The bits that it has.
         bits: u32,
-    },
-    /// The table is too large for constants.
-    #[error("{size} nodes a side: GLSL constants hold at most {}; resample it", crate::MAX_GLSL_SIZE)]
-    TooLarge {
-        /// Nodes a side.
-        size: u32,
     },
     /// The metadata is too long.
     #[error("{bytes} bytes of attributes; at most {} are read back", crate::texture::MAX_KEY_VALUE_BYTES)]

@@ -67,15 +67,13 @@ pub enum Target {
     Dds(Precision),
     /// A C array of as many layers.
     CHeader(Precision),
-    /// A GLSL array of 16-bit floats, and the functions of the bridge that read it.
-    Glsl,
     /// [`arealight::LightTable::numbers`] as little-endian 32-bit floats and nothing else: what the built-in
     /// table is embedded as.
     Raw,
 }
 
 impl Target {
-    /// The format of a path's extension: `exr`, `ktx2`, `dds`, `h`, `glsl` or `f32`. Without a precision, EXR
+    /// The format of a path's extension: `exr`, `ktx2`, `dds`, `h` or `f32`. Without a precision, EXR
     /// is written in 32-bit floats, and everything else in 16-bit ones.
     ///
     /// # Errors
@@ -89,8 +87,6 @@ impl Target {
             ("ktx2", _) => Ok(Self::Ktx2(chosen)),
             ("dds", _) => Ok(Self::Dds(chosen)),
             ("h", _) => Ok(Self::CHeader(chosen)),
-            ("glsl", None | Some(Precision::Half)) => Ok(Self::Glsl),
-            ("glsl", Some(Precision::Single)) => Err(WriteError::Precision { format: "GLSL", bits: 16 }),
             ("f32", None | Some(Precision::Single)) => Ok(Self::Raw),
             ("f32", Some(Precision::Half)) => Err(WriteError::Precision { format: "raw", bits: 32 }),
             _ => Err(WriteError::Extension { extension }),
@@ -102,7 +98,6 @@ impl Target {
         match self {
             Self::Exr | Self::Raw => Precision::Single,
             Self::Ktx2(precision) | Self::Dds(precision) | Self::CHeader(precision) => precision,
-            Self::Glsl => Precision::Half,
         }
     }
 }

@@ -12,7 +12,7 @@
 //! let mirror = DVec3::new(-(1.0_f64 - 0.7 * 0.7).sqrt(), 0.0, 0.7);
 //! assert!((sample.inverse * mirror).normalize().z > 0.99);
 //!
-//! let bytes = arealight_table::write(&table); // OpenEXR; also KTX2, DDS, C and GLSL
+//! let bytes = arealight_table::write(&table); // OpenEXR; also KTX2, DDS and C
 //! assert_eq!(arealight_table::read(&bytes)?, table);
 //! # Ok::<(), arealight_table::ReadError>(())
 //! ```
@@ -45,7 +45,7 @@
 //!
 //! Engines take the same table as KTX2 or DDS, a 2D array of six layers in 16 or 32-bit floats
 //! ([`arealight::LightTable::texels`]) with these attributes as key/value data and `arealight.matrices`, 1 or
-//! 2, and 2 more with pairs; in DDS they follow the texels. C and GLSL take it as source text. In all of
+//! 2, and 2 more with pairs; in DDS they follow the texels. C takes it as source text. In all of
 //! these, the magnitudes' third channel says how much of GGX's grazing dip was added, 1 or 0, so that the
 //! shader needs no attribute. [`read_published`] reads tables in the convention of Heitz et al. 2016. A
 //! file's format is told by its content.
@@ -77,7 +77,6 @@ pub use convert::{resampled, rounded};
 pub use error::{FileError, ReadError, SaveError, WriteError};
 pub use format::{Format, Precision, Target};
 pub use published::{Adjusted, Published, PublishedError, load_published, read_published};
-pub use source::MAX_GLSL_SIZE;
 
 /// The largest file that is read: the largest table, uncompressed, and a header.
 pub const MAX_FILE_BYTES: u64 = (arealight::table::MAX_SIZE as u64).pow(2) * 96 + (1 << 20);
@@ -137,10 +136,6 @@ impl TableFile {
             Target::Ktx2(precision) => ktx::write(&file, precision),
             Target::Dds(precision) => dds::write(&file, precision),
             Target::CHeader(precision) => source::c_header(&file, precision).into_bytes(),
-            Target::Glsl if file.table.size() > MAX_GLSL_SIZE => {
-                return Err(WriteError::TooLarge { size: file.table.size() });
-            }
-            Target::Glsl => source::glsl(&file).into_bytes(),
             Target::Raw => file.table.numbers().iter().flat_map(|number| number.to_le_bytes()).collect(),
         })
     }

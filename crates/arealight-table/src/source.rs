@@ -6,10 +6,6 @@ use crate::{Precision, TableFile, hash};
 use arealight::table::LAYERS;
 use half::f16;
 
-/// The most nodes a side of a table in GLSL: 64 make 20480 words. A SPIR-V constant may have 65532 parts;
-/// drivers keep large ones in memory, where a texture would be faster.
-pub const MAX_GLSL_SIZE: u32 = 64;
-
 /// A table as a C header: one array in the layout of the GPU image.
 pub fn c_header(file: &TableFile, precision: Precision) -> String {
     let size = file.table.size();
@@ -26,7 +22,7 @@ pub fn c_header(file: &TableFile, precision: Precision) -> String {
          {include}#define AREALIGHT_TABLE_SIZE {size}\n#define AREALIGHT_TABLE_LAYERS {LAYERS}\n\n\
          static const {element} arealight_table[AREALIGHT_TABLE_LAYERS * AREALIGHT_TABLE_SIZE * \
          AREALIGHT_TABLE_SIZE * 4] = {{\n",
-        convention(file, "  "),
+        convention(file),
     );
     for texel in file.table.texels() {
         for (channel, number) in texel.into_iter().enumerate() {
@@ -41,71 +37,8 @@ pub fn c_header(file: &TableFile, precision: Precision) -> String {
     text
 }
 
-/// A table as GLSL that needs no texture: the functions of the bridge over an array of constants.
-pub fn glsl(file: &TableFile) -> String {
-    let table = &file.table;
-    let size = table.size();
-    let pair =
-        |a: f32, b: f32| u32::from(f16::from_f32(a).to_bits()) | u32::from(f16::from_f32(b).to_bits()) << 16;
-    let mut words = Vec::new();
-    let mut push_matrix = |texels: &[[f32; 4]]| {
-        let at = words.len();
-        words.extend(texels.iter().flat_map(|texel| [pair(texel[0], texel[1]), pair(texel[2], texel[3])]));
-        at
-    };
-    push_matrix(table.matrix());
-    // In a table of one matrix, that one again
-    let schlick = table.schlick_matrix().map_or(0, &mut push_matrix);
-    // A table without pairs has its two matrices for them
-    let pairs = match table.pairs() {
-        Some(pairs) => pairs.matrices.each_ref().map(|matrix| push_matrix(matrix)),
-        None => [0, schlick],
-    };
-    let magnitude = words.len();
-    words.extend(table.magnitude().iter().map(|texel| pair(texel[0], texel[1])));
-    let second_shares = words.len();
-    let nodes = size as usize * size as usize;
-    words.extend(table.texels()[5 * nodes..].iter().map(|texel| pair(texel[0], texel[1])));
-
-    let count = words.len();
-    let dip = if table.description().ggx_dip { "1.0" } else { "0.0" };
-    let mut text = format!(
-        "#ifndef AREALIGHT_TABLE_CONSTANT_GLSL\n#define AREALIGHT_TABLE_CONSTANT_GLSL\n\n\
-         // The bridge to the table, for a shader without a table texture: include this after\n\
-         // arealight/lobes/table.glsl. {} bytes of constants; a table of more than {MAX_GLSL_SIZE} nodes a
-         // side is for a texture.\n//\n\
-         {}\n\
-         const uint AREALIGHT_TABLE_WORDS[{count}] = uint[{count}](\n",
-        count * 4,
-        convention(file, "// "),
-    );
-    for (row, line) in words.chunks(8).enumerate() {
-        let numbers: Vec<String> = line.iter().map(|word| format!("0x{word:08x}u")).collect();
-        let end = if (row + 1) * 8 < count { ",\n" } else { ");\n" };
-        let _ = write!(text, "    {}{end}", numbers.join(", "));
-    }
-    let starts = [0, magnitude, schlick, pairs[0], pairs[1], second_shares];
-    let starts: Vec<String> = starts.iter().map(usize::to_string).collect();
-    let _ = write!(
-        text,
-        "\nconst int AREALIGHT_TABLE_LAYERS[{LAYERS}] = int[{LAYERS}]({});\n\n\
-         int arealight_bridge_table_size() {{\n    return {size};\n}}\n\n\
-         vec4 arealight_bridge_table(int layer, ivec2 texel) {{\n    \
-         int node = texel.y * {size} + texel.x;\n    \
-         int start = AREALIGHT_TABLE_LAYERS[layer];\n    \
-         if (layer == 1 || layer == 5) {{\n        \
-         return vec4(unpackHalf2x16(AREALIGHT_TABLE_WORDS[start + node]), {dip}, 0.0);\n    }}\n    \
-         int word = start + 2 * node;\n    \
-         return vec4(unpackHalf2x16(AREALIGHT_TABLE_WORDS[word]), unpackHalf2x16(AREALIGHT_TABLE_WORDS[word \
-         + 1]));\n}}\n\n\
-         #endif\n",
-        starts.join(", ")
-    );
-    text
-}
-
 /// What the numbers mean, as lines of a comment.
-fn convention(file: &TableFile, prefix: &str) -> String {
+fn convention(file: &TableFile) -> String {
     let table = &file.table;
     // Text that may be anybody's must not end the comment
     let safe = |text: &str| text.escape_default().to_string().replace("*/", "* /");
@@ -144,5 +77,5 @@ fn convention(file: &TableFile, prefix: &str) -> String {
     if let Some(error) = &file.fit_error {
         lines.insert(4, format!("Error: {}", safe(error)));
     }
-    lines.iter().map(|line| format!("{prefix}{line}").trim_end().to_owned() + "\n").collect()
+    lines.iter().map(|line| format!("  {line}").trim_end().to_owned() + "\n").collect()
 }

@@ -11,7 +11,7 @@ use crate::medium::{MediumFrame, MediumPass, MediumPassInfo};
 use crate::memory::{Buffer, Memory, SharedAllocator};
 use crate::resource::Resource;
 use crate::shade::{Bound, ShadePass, ShadePassInfo, ShadeResources};
-use crate::shadows::{ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo, USED, WRITTEN};
+use crate::shadows::{COPIED, ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo, USED, WRITTEN};
 use crate::table_image::{TableFormat, TableImage};
 use arealight::plan::{MediumOptions, Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
 use arealight::{Blockers, Light, LightTable, PackedLights, PyramidSize};
@@ -34,9 +34,9 @@ pub struct AreaLightsInfo {
     pub tiles: Option<TileOptions>,
     /// How shadow rays are filtered.
     pub shadow_filter: ShadowFilter,
-    /// A medium before the picture, of perspective cameras. Rays need [`ShadeOptions::shadow_rays`]; as
-    /// [`AreaLightsInfo::options`] has it are depth, format and quality, and as each frame has it size,
-    /// camera, matrix, lights and seed.
+    /// A medium before the picture, of perspective cameras. Rays need [`ShadeOptions::shadow_rays`]. Depth,
+    /// format and quality are taken from [`AreaLightsInfo::options`], and size, camera, matrix, lights and
+    /// seed from each frame.
     pub medium: Option<(MediumOptions, MediumFrame)>,
     /// How many frames the host may have recorded that are not done yet.
     pub frames_in_flight: usize,
@@ -84,9 +84,12 @@ pub struct AreaLights {
     textures: Option<Textures>,
     table: (TableImage, Memory),
     lobe_horizons: Buffer,
-    /// What has to be copied by the next frame, until it was recorded.
-    new_table: Option<Arc<Buffer>>,
     blockers: Option<Arc<[Buffer; 2]>>,
+    /// What blockers are relative to, where there are any.
+    blockers_origin: Option<DVec3>,
+    /// What the table and blockers are copied from by the next frame, until it was recorded.
+    new_table: Option<Arc<Buffer>>,
+    new_blockers: Option<Arc<[Buffer; 2]>>,
     pool: vk::DescriptorPool,
     options: ShadeOptions,
     seed: u32,
@@ -164,8 +167,10 @@ impl AreaLights {
                 textures: textures.transpose()?,
                 table: (image, memory),
                 lobe_horizons,
-                new_table: Some(Arc::new(texels)),
                 blockers: None,
+                blockers_origin: None,
+                new_table: Some(Arc::new(texels)),
+                new_blockers: None,
                 pool: vk::DescriptorPool::null(),
                 options: info.options,
                 seed: 0,
@@ -176,7 +181,7 @@ impl AreaLights {
             if made.shadow.is_some()
                 && let Ok(nothing) = Blockers::new(&[])
             {
-                made.set_blockers(&nothing)?;
+                made.set_blockers(&nothing, DVec3::ZERO)?;
             }
             Ok(made)
         }
@@ -221,21 +226,26 @@ impl AreaLights {
         self.shade.stages_and_access()
     }
 
-    /// What blocks shadow rays from the next frame on, relative to the origin of that frame: by default
-    /// nothing.
+    /// What blocks shadow rays from the next frame on, relative to `origin`, which those frames have, too: by
+    /// default nothing. So where there are shadows, let the origin stay while the camera moves.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] where there are no shadows: see [`ShadeOptions::shadow_rays`];
     /// [`Error::Vulkan`] where memory is out.
-    pub fn set_blockers(&mut self, blockers: &Blockers) -> Result<(), Error> {
+    pub fn set_blockers(&mut self, blockers: &Blockers, origin: DVec3) -> Result<(), Error> {
         if self.shadow.is_none() {
             let message = "are given, but ShadeOptions::shadow_rays is 0".into();
             return Err(Error::InvalidArgument { field: "blockers", message });
         }
         let arrays: [&[u8]; 2] = [cast_slice(&blockers.nodes), cast_slice(&blockers.triangles)];
-        // SAFETY: places that use the buffers keep them.
-        let buffer = |bytes| unsafe { mapped(&self.context, &self.allocator, bytes) };
-        self.blockers = Some(Arc::new([buffer(arrays[0])?, buffer(arrays[1])?]));
+        let pair = |location| {
+            // SAFETY: places that use the buffers keep them.
+            let made = |bytes| unsafe { holding(&self.context, &self.allocator, bytes, location) };
+            Ok::<_, Error>(Arc::new([made(arrays[0])?, made(arrays[1])?]))
+        };
+        let (on_device, staging) = (pair(MemoryLocation::GpuOnly)?, pair(MemoryLocation::CpuToGpu)?);
+        self.blockers_origin = (!blockers.triangles.is_empty()).then_some(origin);
+        (self.blockers, self.new_blockers) = (Some(on_device), Some(staging));
         Ok(())
     }
 
@@ -296,7 +306,7 @@ impl AreaLights {
             textures.settle(recorded.is_ok());
         }
         recorded?;
-        self.new_table = None;
+        (self.new_table, self.new_blockers) = (None, None);
         self.seed = self.seed.wrapping_add(1);
         Ok(())
     }
@@ -314,6 +324,12 @@ impl AreaLights {
         // Check, and make what is missing
         if let Some(textures) = &self.textures {
             textures.check_lights(lights)?;
+        }
+        if let Some(there) = self.blockers_origin
+            && there != origin
+        {
+            let message = format!("is {origin}, but blockers are relative to {there}: set them again");
+            return Err(Error::InvalidArgument { field: "origin", message });
         }
         let packed = PackedLights::new(lights, origin)?;
         let place = place_of(&mut self.places, place)?;
@@ -365,9 +381,16 @@ impl AreaLights {
         // Record what the frame reads, and the passes
         // SAFETY: the same contract.
         unsafe {
-            place.staging.clone_from(&self.new_table);
+            place.staging = (self.new_table.clone(), self.new_blockers.clone());
             if let Some(staging) = &self.new_table {
                 self.table.0.record_upload(command_buffer, staging.raw, 0);
+            }
+            if let (Some(staging), Some(blockers)) = (&self.new_blockers, &self.blockers) {
+                for (from, to) in staging.iter().zip(blockers.iter()) {
+                    let all = vk::BufferCopy::default().size(from.size);
+                    context.device.cmd_copy_buffer(command_buffer, from.raw, to.raw, &[all]);
+                }
+                context.record_barrier(command_buffer, COPIED, USED);
             }
             if let Some(textures) = &mut self.textures {
                 textures.clear_once(command_buffer);
@@ -450,15 +473,30 @@ fn descriptor_sets(
 /// The least size of a buffer: a record of any kind of light.
 const LEAST: vk::DeviceSize = 64;
 
-/// A buffer of these bytes, for shaders and copies.
+/// A mapped buffer of these bytes, for shaders and copies.
 ///
 /// # Safety
 /// As [`Buffer::new`].
 unsafe fn mapped(context: &Context, allocator: &SharedAllocator, bytes: &[u8]) -> Result<Buffer, Error> {
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
+    // SAFETY: the same contract.
+    unsafe { holding(context, allocator, bytes, MemoryLocation::CpuToGpu) }
+}
+
+/// A buffer for these bytes, for shaders and copies, which has them where it is mapped.
+///
+/// # Safety
+/// As [`Buffer::new`].
+unsafe fn holding(
+    context: &Context,
+    allocator: &SharedAllocator,
+    bytes: &[u8],
+    location: MemoryLocation,
+) -> Result<Buffer, Error> {
+    let copies = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER | copies;
     let size = (bytes.len() as vk::DeviceSize).max(LEAST);
     // SAFETY: the same contract.
-    let mut buffer = unsafe { Buffer::new(context, allocator, usage, (size, MemoryLocation::CpuToGpu)) }?;
+    let mut buffer = unsafe { Buffer::new(context, allocator, usage, (size, location)) }?;
     buffer.write(bytes);
     Ok(buffer)
 }

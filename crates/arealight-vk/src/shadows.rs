@@ -362,15 +362,14 @@ impl ShadowPass {
                 && stage == ShadowStage::Rays
             {
                 let context = self.rays.layouts().context();
-                let copied = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
-                context.record_barrier(command_buffer, WRITTEN, copied);
+                context.record_barrier(command_buffer, WRITTEN, COPIED);
                 context.device().cmd_update_buffer(
                     command_buffer,
                     buffer,
                     offset,
                     bytemuck::cast_slice(&words),
                 );
-                context.record_barrier(command_buffer, copied, USED);
+                context.record_barrier(command_buffer, COPIED, USED);
             }
             pipelines.with(specialization, |pass| {
                 let bytes = bytemuck::bytes_of(&ready.constants);
@@ -429,7 +428,9 @@ struct HistoryHead {
     words: [f32; plan::SHADOW_HISTORY_HEAD / 2],
 }
 
-/// What a dispatch wrote, and what the next one may do with it.
+/// What a copy or a dispatch wrote, and what the next dispatch may do with it.
+pub(crate) const COPIED: (vk::PipelineStageFlags, vk::AccessFlags) =
+    (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
 pub(crate) const WRITTEN: (vk::PipelineStageFlags, vk::AccessFlags) =
     (vk::PipelineStageFlags::COMPUTE_SHADER, vk::AccessFlags::SHADER_WRITE);
 pub(crate) const USED: (vk::PipelineStageFlags, vk::AccessFlags) = (

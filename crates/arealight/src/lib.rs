@@ -35,7 +35,7 @@
 //!
 //! # Conventions
 //! - SI radiometry, linear Rec. 709 colour. A light's radiance is W/(m² sr), constant over a one-sided
-//!   emitter whose front is the right-hand side of its vertex order; a two-sided light lights both.
+//!   emitter whose front is where its vertices run counter-clockwise; a two-sided light lights both.
 //! - Right-handed. Matrices are column-major and act on column vectors. Angles are in radians.
 //! - `roughness` is perceptual, `alpha = roughness²`. GGX with height-correlated Smith masking-shadowing and
 //!   Schlick's Fresnel term.

@@ -11,8 +11,8 @@ pub(crate) const FLAT: f64 = 1e-4;
 #[derive(Debug, Clone, PartialEq)]
 pub enum LightShape {
     /// A flat polygon of three vertices or more, convex or concave, whose edges do not cross. Holes are cut
-    /// by [`Light::cut_holes`](crate::Light::cut_holes). The front is the right-hand side of the vertex
-    /// order: seen from the front, the vertices run counter-clockwise.
+    /// by [`Light::cut_holes`](crate::Light::cut_holes). Seen from the front, the
+    /// vertices run counter-clockwise.
     Polygon(Vec<DVec3>),
     /// Several flat faces, each an outline as a polygon's: see [`crate::mesh`].
     Mesh {

@@ -1,6 +1,8 @@
 //! Quality levels, chosen by the host for each pass: a [`Level`] by its name, or each choice in a
 //! [`Quality`].
 
+use crate::effects::Effects;
+
 /// How the arcs that a polygon's edges subtend are summed to a form factor.
 ///
 /// Either returns a finite number in [0, 1], whatever comes in, and keeps the promises that
@@ -44,8 +46,8 @@ pub enum SpecularLobes {
     /// a surface that has sheen the second goes to that, at a third to a half of its error. Falls back to one
     /// with [`Lobes::Formula`] and with a table that has no pairs.
     Two = 1,
-    /// No transformed cosine: GGX itself, integrated over the half vectors of a light's outline, for three to
-    /// four times the instructions of one integral. Error relative to two lobes: under lamps, a tenth to a
+    /// No transformed cosine: GGX itself, integrated over the half vectors of a light's outline, at four
+    /// times the time of one integral. Error relative to two lobes: under lamps, a tenth to a
     /// thirtieth for two roughnesses ([`crate::Effects::ANISOTROPY`]), a third to the same for one; two to
     /// three times for lights that fill the lobe, as a sky does; light from everywhere is exact. Only for
     /// polygons and meshes without an image; other lights have [`SpecularLobes::One`]. The table is read for
@@ -113,7 +115,14 @@ impl Level {
         }
     }
 
-    /// What the level chooses. Images on lights are looked up by one fetch on each.
+    /// The level to take for surfaces of these effects: of brushed metal, thin films or coats
+    /// [`Level::HalfVectors`], else the default.
+    pub fn for_surfaces(surfaces: Effects) -> Self {
+        let bent = Effects::ANISOTROPY | Effects::THIN_FILM | Effects::COAT;
+        if surfaces.intersects(bent) { Self::HalfVectors } else { Self::default() }
+    }
+
+    /// What the level chooses.
     pub fn quality(self) -> Quality {
         let exact = Quality::default();
         match self {

@@ -30,7 +30,7 @@ impl Deferred {
         // How your surfaces are stored and shaded. It adds to the emission that was drawn
         let options = ShadeOptions { from_depth: true, output: Output::Add, ..ShadeOptions::default() };
         GBuffer::formats().check(options)?; // says which image has another format than it should
-        let tiles = Some(TileOptions { least_quads: 0, ..TileOptions::default() });
+        let tiles = Some(TileOptions::default());
         let info = AreaLightsInfo {
             options,
             tiles,

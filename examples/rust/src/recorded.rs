@@ -77,7 +77,7 @@ impl Recorded {
         GBuffer::formats().check(options)?; // says which image has another format than it should
         let table = LightTable::ggx();
         // With tiles, for scenes of many lights. (TileOptions::default() classifies no frame of two.)
-        let tiles = TileOptions { least_quads: 0, ..TileOptions::default() };
+        let tiles = TileOptions::default();
         let info = ShadePassInfo { tiles: Some(tiles), table_size: table.size(), ..options.into() };
         // SAFETY: the pass is dropped after the frames, and before the device.
         let shade = unsafe { ShadePass::new(&context, info) }?;

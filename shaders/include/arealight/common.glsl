@@ -7,8 +7,7 @@
 // - SI radiometry, linear Rec. 709 colour; radiance in W/(m^2 sr).
 // - Right-handed; matrices are column-major and act on column vectors; angles in radians.
 // - roughness is perceptual, alpha = roughness^2; GGX with height-correlated Smith masking-shadowing.
-// - A light's front is the right-hand side of its vertex order: seen from the front, the vertices run
-//   counter-clockwise.
+// - A light's front is the side from which its vertices run counter-clockwise.
 // - Positions are relative to an origin near the camera that the host chooses: float32 world coordinates far
 //   from zero lose the result before it gets here.
 // - Pure functions: no bindings, no mutable globals. What the host must provide are bridge functions

@@ -45,12 +45,14 @@ struct ArealightReflected {
         return vec3(0.0);                                                                           \
     }
 
-// What AREALIGHT_LIGHT_KIND makes of them: arealight_lobe_weight: of one lobe, its form factor times the
-// image's mean. What is left of a lobe above the surface keeps its albedo (gain); rounding of a small part
-// may not exceed it, which arealight_form_factor sees to. By half vectors what it reflects.
-// arealight_lobe_albedo: what that is multiplied with; by half vectors it is 1. arealight_reflected: of a
-// light of unit radiance, without visibility, lobe by lobe; 0 for lobes that are off. arealight_radiance:
-// outgoing radiance towards the viewer of all lobes, W/(m^2 sr).
+// What AREALIGHT_LIGHT_KIND makes of them:
+//
+//     arealight_lobe_weight  a lobe's form factor times the image's mean; where the surface's horizon clips
+//                            the lobe, times its gain, which keeps its albedo, and at most 1. Over half
+//                            vectors what the lobe reflects
+//     arealight_lobe_albedo  what that is multiplied with; over half vectors 1
+//     arealight_reflected    by lobes, of a light of unit radiance, without visibility
+//     arealight_radiance     outgoing radiance towards the viewer of all lobes, W/(m^2 sr)
 //
 // The diffuse lobe is exact to the form factor's error; the specular lobe is the fitted one: exact for the
 // table's lobe, and as close to GGX as the table's fit (docs/fit.md). Source: Heitz et al. 2016, eq. 11.

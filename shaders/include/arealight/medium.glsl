@@ -11,8 +11,8 @@
 //     radiance += scattering * arealight_in_scattered(medium, quad); // for each light, of any kind
 //
 // What comes of it is for a scattering coefficient of 1, and for lights that nothing dims on their way:
-// W/(m^2 sr) per unit of length. Two-lobe phase functions are the sum of two points. Lights must not be cut
-// at a surface's horizon (AREALIGHT_SURFACE_HORIZON).
+// W/(m^2 sr) per unit of length. Two-lobe phase functions are the sum of two points.
+// AREALIGHT_SURFACE_HORIZON counts as 0.
 
 // A point made ready for any number of lights.
 struct ArealightMediumPoint {

@@ -77,7 +77,7 @@
 #endif
 
 // The specular lobe, and a coat's, by half vectors of polygons without an image
-// (arealight::SpecularLobes::HalfVectors): lobes/half_vectors.glsl.
+// (arealight::SpecularLobes::HalfVectors), in the place of two lobes: lobes/half_vectors.glsl.
 #ifndef AREALIGHT_HALF_VECTORS
 #define AREALIGHT_HALF_VECTORS 0
 #endif
@@ -175,12 +175,14 @@ const bool AREALIGHT_HAS_TEXTURED_DISKS = bool(AREALIGHT_TEXTURED_DISKS);
 const bool AREALIGHT_HAS_PROFILES = bool(AREALIGHT_PROFILES);
 const bool AREALIGHT_HAS_AZIMUTHS = bool(AREALIGHT_AZIMUTHS);
 const bool AREALIGHT_HAS_OPENINGS = bool(AREALIGHT_OPENINGS);
-const bool AREALIGHT_CLIPS_AT_SURFACE = bool(AREALIGHT_SURFACE_HORIZON);
+// Points in a medium have no horizon.
+const bool AREALIGHT_CLIPS_AT_SURFACE = bool(AREALIGHT_MEDIA) ? false : bool(AREALIGHT_SURFACE_HORIZON);
 const bool AREALIGHT_USES_FORMULA = bool(AREALIGHT_FORMULA);
-// Not by formulas, which make one. A choice, no logical operators: compilers would make branches of those.
-const bool AREALIGHT_HAS_TWO_SPECULAR_LOBES = AREALIGHT_USES_FORMULA ? false
-    : bool(AREALIGHT_TWO_SPECULAR_LOBES);
 const bool AREALIGHT_HAS_HALF_VECTORS = bool(AREALIGHT_HALF_VECTORS);
+// Not with half vectors, nor by formulas, which make one. A choice, no logical operators: compilers would
+// make branches of those.
+const bool AREALIGHT_HAS_TWO_SPECULAR_LOBES = AREALIGHT_USES_FORMULA ? false
+    : AREALIGHT_HAS_HALF_VECTORS ? false : bool(AREALIGHT_TWO_SPECULAR_LOBES);
 // Sheen is two lobes wherever the level asks for more than one specular lobe.
 const bool AREALIGHT_WANTS_TWO_SHEEN_LOBES = AREALIGHT_HAS_HALF_VECTORS ? true
     : bool(AREALIGHT_TWO_SPECULAR_LOBES);

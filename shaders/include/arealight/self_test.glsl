@@ -3,11 +3,11 @@
 
 // Ten shading points with the answers of float64, for a host's own shader to run with its own bridges:
 // whether the table is loaded as it should be. A table with missing layers, whose axes are swapped, or which
-// is read as sRGB makes a picture that is only darker. examples/self_test.comp runs it. It is for the default
-// options: of the specular lobe alone, from the table, as one lobe.
+// is read as sRGB makes a picture that is only darker. examples/self_test.comp runs it. It is of the specular
+// lobe alone, as one lobe and, with AREALIGHT_TWO_SPECULAR_LOBES, as two; other options don't matter.
 
-#include "arealight/lights/quad.glsl"
-#include "arealight/material.glsl"
+#include "arealight/form_factor/quad.glsl"
+#include "arealight/lobes/specular.glsl"
 
 const int AREALIGHT_SELF_TEST_POINTS = 10;
 // What an answer may be off by, relative to the largest channel: half floats are off by 4e-4, a table of 32
@@ -50,42 +50,58 @@ const vec3 AREALIGHT_SELF_TEST_ANSWERS[10] = vec3[10](
         vec3(0.418419854, 0.183879639, 0.066609532),
     vec3(0.201004664, 0.201004664, 0.201004664));
 
-// What the library makes of a point: black, but for its specular lobe.
-vec3 arealight_self_test_radiance(int index) {
-    ArealightSurface surface;
-    surface.position = vec3(0.0);
-    surface.normal = vec3(0.0, 0.0, 1.0);
-    surface.view = AREALIGHT_SELF_TEST_VIEWS[index].xyz;
-    surface.roughness = AREALIGHT_SELF_TEST_VIEWS[index].w;
-    surface.diffuse_albedo = vec3(0.0);
-    surface.f0 = AREALIGHT_SELF_TEST_F0[index];
-    surface.f90 = 1.0;
-    surface.interface_f0 = 0.0;
-    surface.interface_f90 = 0.0;
-    surface.diffuse_roughness = 0.0;
-    surface.coat = ArealightCoat(vec3(0.0), 0.0, 0.0);
-    surface.anisotropy = ArealightAnisotropy(vec3(0.0), surface.roughness);
-    surface.sheen = ArealightSheen(vec3(0.0), 0.0);
-    vec3 u = AREALIGHT_SELF_TEST_HALVES_U[index];
-    vec3 v = AREALIGHT_SELF_TEST_HALVES_V[index];
-    ArealightQuadLight light;
-    light.radiance = vec3(1.0);
-    light.center = AREALIGHT_SELF_TEST_CENTERS[index];
-    light.normal = normalize(cross(u, v));
-    light.quad = ArealightQuad(-u - v, u - v, u + v, v - u);
-    light.two_sided = false;
-    return arealight_radiance(arealight_point(surface), light);
+// What two lobes reflect.
+const vec3 AREALIGHT_SELF_TEST_ANSWERS_OF_TWO[10] = vec3[10](
+    vec3(0.213402287, 0.142266219, 0.071130150), vec3(0.687013929, 0.458169684, 0.229325438),
+    vec3(0.009024164, 0.009024164, 0.009024164), vec3(0.206087665, 0.206087665, 0.206087665),
+    vec3(0.106664457, 0.106664457, 0.119099592), vec3(0.941257651, 0.891717799, 0.792638096),
+    vec3(0.024182386, 0.024182386, 0.024182386), vec3(0.010693282, 0.010693282, 0.010693282),
+    vec3(0.417355754, 0.184235769, 0.067675776), vec3(0.200455986, 0.200455986, 0.200455986));
+
+// What the lobe of a texel of the table reflects of a quad in the shading frame.
+float arealight_self_test_lobe(ArealightFrame frame, ArealightTableSample table, vec4 texel,
+                               ArealightQuad quad) {
+    mat3 space = arealight_table_space(frame, texel, table.alpha);
+    return arealight_form_factor(arealight_quad_vector(arealight_transformed(space, quad), 1.0));
+}
+
+// What the table makes of a point, by one lobe or by two.
+vec3 arealight_self_test_radiance(int index, bool has_two) {
+    vec4 view = AREALIGHT_SELF_TEST_VIEWS[index];
+    vec3 f0 = AREALIGHT_SELF_TEST_F0[index];
+    ArealightFrame frame = arealight_surface_frame(vec3(0.0, 0.0, 1.0), view.xyz);
+    mat3 to_frame = arealight_frame_matrix(frame);
+    vec3 center = to_frame * AREALIGHT_SELF_TEST_CENTERS[index];
+    vec3 u = to_frame * AREALIGHT_SELF_TEST_HALVES_U[index];
+    vec3 v = to_frame * AREALIGHT_SELF_TEST_HALVES_V[index];
+    ArealightQuad quad = ArealightQuad(center - u - v, center + u - v, center + u + v, center + v - u);
+    ArealightTableSample table = arealight_table_lookup(frame, view.w, has_two);
+    vec3 albedo = arealight_specular_albedo(table, f0, 1.0);
+    vec4 texel = mix(table.matrix, table.schlick_matrix, arealight_schlick_share(table, f0, 1.0));
+    if (has_two) {
+        vec3 second = arealight_second_albedo(table, f0, 1.0, albedo);
+        return (albedo - second) * arealight_self_test_lobe(frame, table, table.matrix, quad)
+             + second * arealight_self_test_lobe(frame, table, table.schlick_matrix, quad);
+    }
+    return albedo * arealight_self_test_lobe(frame, table, texel, quad);
+}
+
+// Whether an answer is right. NaN is wrong, too.
+bool arealight_self_test_agrees(vec3 radiance, vec3 answer) {
+    return arealight_max_component(radiance - answer)
+        <= AREALIGHT_SELF_TEST_TOLERANCE * arealight_max_component(answer);
 }
 
 // A bit for each point whose radiance is wrong, the first in the lowest: 0 where all are right.
 uint arealight_self_test() {
     uint wrong = 0u;
     for (int index = 0; index < AREALIGHT_SELF_TEST_POINTS; index++) {
-        vec3 answer = AREALIGHT_SELF_TEST_ANSWERS[index];
-        vec3 off = abs(arealight_self_test_radiance(index) - answer);
-        float largest = max(answer.r, max(answer.g, answer.b));
-        // NaN is wrong, too
-        bool is_right = max(off.r, max(off.g, off.b)) <= AREALIGHT_SELF_TEST_TOLERANCE * largest;
+        bool is_right = arealight_self_test_agrees(arealight_self_test_radiance(index, false),
+                                                   AREALIGHT_SELF_TEST_ANSWERS[index]);
+        if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
+            is_right = is_right && arealight_self_test_agrees(arealight_self_test_radiance(index, true),
+                                                              AREALIGHT_SELF_TEST_ANSWERS_OF_TWO[index]);
+        }
         wrong |= is_right ? 0u : 1u << uint(index);
     }
     return wrong;

@@ -110,7 +110,14 @@ fn what_blocks_darkens_and_what_does_not_changes_nothing() {
             // Far larger than the lamp, right above the floor
             let corners = [[-50.0, -50.0], [50.0, -50.0], [50.0, 50.0], [-50.0, 50.0]];
             let [a, b, c, d] = corners.map(|[x, y]| Vec3::new(x, y, 0.01));
-            area_lights.set_blockers(&Blockers::new(&[[a, b, c], [a, c, d]]).unwrap()).unwrap();
+            let sheet = Blockers::new(&[[a, b, c], [a, c, d]]).unwrap();
+            // Those of another origin than the frame's are refused, not elsewhere
+            area_lights.set_blockers(&sheet, DVec3::X).unwrap();
+            let (commands, resources) = (vk::CommandBuffer::null(), floor.resources());
+            // SAFETY: Nothing is recorded where an error is returned.
+            let refused = unsafe { area_lights.shade(commands, 1, &lights, DVec3::ZERO, &view, &resources) };
+            assert_eq!(field(&refused.unwrap_err()), "origin");
+            area_lights.set_blockers(&sheet, DVec3::ZERO).unwrap();
             let dark = frame(area_lights, 1);
             let black = if output == Output::Add { BEFORE } else { Vec4::ZERO };
             // What is taken away may be rounded in another way than what was there
@@ -119,7 +126,7 @@ fn what_blocks_darkens_and_what_does_not_changes_nothing() {
             let bound = Vec3::splat(engine.rounding() * brightest);
             let is_black = |texel: &Vec4| (*texel - black).truncate().abs().cmple(bound).all();
             assert!(dark.iter().all(is_black), "{:?}", dark.iter().find(|texel| !is_black(texel)));
-            area_lights.set_blockers(&Blockers::new(&[]).unwrap()).unwrap();
+            area_lights.set_blockers(&Blockers::new(&[]).unwrap(), DVec3::X).unwrap();
             assert_eq!(frame(area_lights, 0), free);
             // The twin: there was something to darken
             assert!(free.iter().filter(|texel| texel.x > black.x + 0.01).count() > free.len() / 4);
@@ -238,7 +245,8 @@ fn mistakes_are_named() {
         let mut without = floor.resources();
         without.planes[Plane::Normal] = None;
         assert_eq!(shade(0, &floor.frame(), &without), Plane::Normal.name());
-        assert_eq!(field(area_lights.set_blockers(&Blockers::new(&[]).unwrap())), "blockers");
+        let nothing = Blockers::new(&[]).unwrap();
+        assert_eq!(field(area_lights.set_blockers(&nothing, DVec3::ZERO)), "blockers");
         // SAFETY: As above.
         assert_eq!(field(unsafe { area_lights.load_textures(commands, 0, &[]) }), "textures");
         // The twin: the next frame is drawn

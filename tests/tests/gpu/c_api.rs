@@ -118,7 +118,7 @@ fn area_lights_say_what_they_cannot_do() {
             unsafe {
                 let mut blockers = null_mut();
                 good(arealight_blockers_create(null(), null(), 0, &raw mut blockers));
-                let set = arealight_area_lights_set_blockers(owner, blockers);
+                let set = arealight_area_lights_set_blockers(owner, blockers, [0.0; 3].as_ptr());
                 refused(set, ErrorArgument, "ArealightPassOptions.shadow_rays is 0");
                 good(arealight_blockers_destroy(blockers));
             }

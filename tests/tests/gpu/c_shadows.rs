@@ -176,9 +176,10 @@ impl<'a> CPasses<'a> {
             let info = ArealightAreaLightsInfo { options, shadow_filter, ..NO_INFO };
             let images = ArealightResources { radiance: c_image(&owned, Usage::COMPUTE_WRITE), ..resources };
             self.library.with_area_lights(&info, |owner| {
-                // SAFETY: the pointers are valid.
-                let set =
-                    |blockers: *mut _| good(unsafe { arealight_area_lights_set_blockers(owner, blockers) });
+                let set = |blockers: *mut _| {
+                    // SAFETY: the pointers are valid.
+                    good(unsafe { arealight_area_lights_set_blockers(owner, blockers, [0.0; 3].as_ptr()) });
+                };
                 blocker_arrays(&patch.blockers, None, set);
                 self.library.submit(null_mut(), &lights, &images, &frame);
             });

@@ -44,6 +44,14 @@ fn is_none(engine: &TestEngine, (pixels, largest): (usize, f32)) -> bool {
 }
 
 #[test]
+fn the_documents_have_every_effect() {
+    let table = include_str!("../../../docs/effects.md");
+    for effect in Effects::all().iter() {
+        assert!(table.contains(&format!("`{effect}`")), "{effect}");
+    }
+}
+
+#[test]
 fn an_effect_that_no_surface_needs_changes_no_bit() {
     let Some(engine) = TestEngine::new() else { return };
     let scene = scene("sweep.glb");

@@ -1,8 +1,9 @@
 //! The self-test that hosts run: its answers are the oracle's, the right table passes it, and tables as hosts
 //! load them wrongly fail.
 
+use arealight::kernels::Kernel;
 use arealight::table::LAYERS;
-use arealight_tests::kernel::SELF_TEST;
+use arealight_tests::kernel::{SELF_TEST, SELF_TEST_OF_TWO};
 use arealight_tests::prelude::*;
 
 const SOURCE: &str = include_str!("../../../shaders/include/arealight/self_test.glsl");
@@ -26,36 +27,41 @@ fn array<const N: usize>(name: &str) -> Vec<[f64; N]> {
 fn answers_are_those_of_float64() {
     let table = LightTable::ggx();
     let views = array::<4>("VIEWS");
-    let [f0, centers, halves_u, halves_v, answers] = ["F0", "CENTERS", "HALVES_U", "HALVES_V", "ANSWERS"]
-        .map(|name| array::<3>(name).into_iter().map(DVec3::from_array).collect::<Vec<_>>());
-    assert_eq!([views.len(), f0.len(), answers.len()], [10; 3]);
-    let radiance = |index: usize, f0: DVec3| {
+    let [f0, centers, halves_u, halves_v, of_one, of_two] =
+        ["F0", "CENTERS", "HALVES_U", "HALVES_V", "ANSWERS", "ANSWERS_OF_TWO"]
+            .map(|name| array::<3>(name).into_iter().map(DVec3::from_array).collect::<Vec<_>>());
+    assert_eq!([views.len(), f0.len(), of_one.len(), of_two.len()], [10; 4]);
+    let radiance = |index: usize, f0: DVec3, specular_lobes| {
         let [x, y, z, roughness] = views[index];
         let (center, u, v) = (centers[index], halves_u[index], halves_v[index]);
         let vertices = [-u - v, u - v, u + v, v - u].map(|offset| center + offset);
         let surface = Surface { f0, f90: 1.0, alpha: roughness * roughness, ..Surface::default() };
         let given = point(surface, DVec3::new(x, y, z), vertices.into(), false);
         let light = RelativeLight::new(&given.light, given.position);
-        ltc(&table, &given.surface, given.normal, given.view, &light)
+        let quality = Quality { specular_lobes, ..Quality::default() };
+        ltc_on(quality, &table, &given.surface, given.normal, given.view, &light)
     };
-    for index in 0..10 {
-        let apart = (radiance(index, f0[index]) - answers[index]).abs().max_element();
-        // Answers have nine decimals; the table's floats are 32 bits
-        assert!(apart <= 1e-8, "point {index}: {apart:e} apart");
-        // The twin: a surface that reflects a little more
-        let other = radiance(index, f0[index] + 0.01);
-        assert!((other - answers[index]).abs().max_element() > 1e-6, "point {index}");
+    for (lobes, answers) in [(SpecularLobes::One, &of_one), (SpecularLobes::Two, &of_two)] {
+        for index in 0..10 {
+            let found = radiance(index, f0[index], lobes);
+            let apart = (found - answers[index]).abs().max_element();
+            // Answers have nine decimals; the table's floats are 32 bits
+            assert!(apart <= 1e-8, "{lobes:?}, point {index}: {found:.9}");
+            // The twin: a surface that reflects a little more
+            let other = radiance(index, f0[index] + 0.01, lobes);
+            assert!((other - answers[index]).abs().max_element() > 1e-6, "{lobes:?}, point {index}");
+        }
     }
 }
 
 /// Which points are wrong with a table.
-fn run(engine: &TestEngine, table: Resource) -> u32 {
+fn run(engine: &TestEngine, kernel: &'static Kernel, table: Resource) -> u32 {
     // The buffer is longer than the one word that is written
-    engine.dispatch::<u32>(&SELF_TEST, &[], &[table], 1)[0]
+    engine.dispatch::<u32>(kernel, &[], &[table], 1)[0]
 }
 
 /// Likewise, of a table of these texels.
-fn wrong_points(engine: &TestEngine, texels: &[[f32; 4]]) -> u32 {
+fn wrong_points(engine: &TestEngine, kernel: &'static Kernel, texels: &[[f32; 4]]) -> u32 {
     let size = LightTable::ggx().size();
     let description = ImageDescription {
         name: "table",
@@ -68,7 +74,7 @@ fn wrong_points(engine: &TestEngine, texels: &[[f32; 4]]) -> u32 {
     image.upload(texels, Usage::COMPUTE_READ).unwrap();
     let layout = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
     let resource = Resource::SampledImage { view: image.array_view(), layout };
-    run(engine, resource)
+    run(engine, kernel, resource)
 }
 
 /// A value as it is read where a format is said to be sRGB.
@@ -83,8 +89,15 @@ fn the_right_table_passes_and_wrong_ones_fail() {
     let table = LightTable::ggx();
     let (texels, size) = (table.texels(), table.size() as usize);
     let layer = size * size;
-    assert_eq!(wrong_points(&engine, &texels), 0);
-    assert_eq!(run(&engine, engine.table()), 0, "in half floats");
+    for kernel in [&SELF_TEST, &SELF_TEST_OF_TWO] {
+        assert_eq!(wrong_points(&engine, kernel, &texels), 0, "{}", kernel.name);
+        assert_eq!(run(&engine, kernel, engine.table()), 0, "{}, in half floats", kernel.name);
+    }
+    // Layers of two lobes are read where there are two alone
+    let first_three: Vec<_> =
+        texels.iter().enumerate().map(|(at, texel)| if at < 3 * layer { *texel } else { [0.0; 4] }).collect();
+    assert_eq!(wrong_points(&engine, &SELF_TEST, &first_three), 0);
+    assert!(wrong_points(&engine, &SELF_TEST_OF_TWO, &first_three).count_ones() >= 5);
 
     // What hosts do to a table: they copy the first layer alone, take rows for columns, or call its format
     // sRGB
@@ -101,7 +114,7 @@ fn the_right_table_passes_and_wrong_ones_fail() {
     for (what, wrong) in
         [("first layer", first_layer), ("swapped", swapped), ("sRGB", srgb), ("turned", turned)]
     {
-        let found = wrong_points(&engine, &wrong);
+        let found = wrong_points(&engine, &SELF_TEST, &wrong);
         println!("{what}: {} of 10 points are wrong", found.count_ones());
         assert!(found.count_ones() >= 5, "{what}: {found:#012b}");
     }

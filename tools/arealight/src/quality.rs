@@ -2,117 +2,77 @@
 
 use crate::failure::Failure;
 use arealight::{Effects, Footprint, FormFactor, Horizon, Level, LightTable, Lobes, Quality, SpecularLobes};
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::path::PathBuf;
+
+/// A choice within a level: its word, what it is, and the choice.
+type Choice<T> = (&'static str, &'static str, T);
+
+const FORM_FACTORS: [Choice<FormFactor>; 2] = [
+    ("exact", "float32's own precision, absolute: 1e-6", FormFactor::Exact),
+    ("difference", "As exact, and as precise relative to lights that look small", FormFactor::Difference),
+];
+const HORIZONS: [Choice<Horizon>; 2] = [
+    (
+        "cosine",
+        "At the horizon of the lobe's cosine space; some light leaks in from below the surface",
+        Horizon::Cosine,
+    ),
+    ("both", "At the surface's horizon as well: nothing leaks", Horizon::Both),
+];
+const SPECULAR_LOBES: [Choice<SpecularLobes>; 3] = [
+    ("one", "By one transformed cosine: an integral a light", SpecularLobes::One),
+    ("two", "By two: two integrals a light, at .6 to .8 times the error", SpecularLobes::Two),
+    (
+        "half-vectors",
+        "GGX itself over half vectors of polygons and meshes: closest to lamps, and to brushed metals",
+        SpecularLobes::HalfVectors,
+    ),
+];
+/// Those that are fitted.
+pub const FITTED_LOBES: [Choice<SpecularLobes>; 2] = [SPECULAR_LOBES[0], SPECULAR_LOBES[1]];
+const LOBES: [Choice<Lobes>; 2] =
+    [("table", "The table", Lobes::Table), ("formula", "Formulas, without a texture", Lobes::Formula)];
+const FOOTPRINTS: [Choice<Footprint>; 2] = [
+    ("kernel", "Three fetches of the image filtered by the lobe's own kernel", Footprint::Kernel),
+    ("mips", "One fetch of plain mips, as in Heitz et al. 2016", Footprint::Mips),
+];
+
+/// Takes the words of choices, which help texts list.
+pub fn word_of<T: Copy + Send + Sync>(choices: &'static [Choice<T>]) -> impl TypedValueParser<Value = T> {
+    let words = choices.iter().map(|(word, what, _)| PossibleValue::new(*word).help(*what));
+    PossibleValuesParser::new(words).map(|found| {
+        let known = choices.iter().find(|(word, ..)| *word == found);
+        known.expect("clap takes no other word").2
+    })
+}
 
 /// How lights are integrated.
 #[derive(clap::Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Quality")]
 pub struct QualityArguments {
-    /// The quality level; docs/cost.md says which to take [default: exact, and of scenes
-    /// with brushed metal, thin films or coats half-vectors]
+    /// The quality level; docs/cost.md says which to take [default: exact; of pictures of
+    /// brushed metal, thin films or coats half-vectors]
     #[arg(long, value_name = "LEVEL", value_parser = level_parser())]
     level: Option<Level>,
     /// Within the level: how edges of lights are integrated
-    #[arg(long, value_enum, value_name = "HOW")]
-    form_factor: Option<Edges>,
+    #[arg(long, value_name = "HOW", value_parser = word_of(&FORM_FACTORS))]
+    form_factor: Option<FormFactor>,
     /// Within the level: where lights are clipped
-    #[arg(long, value_enum, value_name = "WHERE")]
-    horizon: Option<Clip>,
+    #[arg(long, value_name = "WHERE", value_parser = word_of(&HORIZONS))]
+    horizon: Option<Horizon>,
     /// Within the level: how the specular lobe is integrated
-    #[arg(long, value_enum, value_name = "HOW")]
-    specular_lobes: Option<Specular>,
+    #[arg(long, value_name = "HOW", value_parser = word_of(&SPECULAR_LOBES))]
+    specular_lobes: Option<SpecularLobes>,
     /// Within the level: where the glossy lobe comes from
-    #[arg(long, value_enum, value_name = "WHERE")]
-    lobes: Option<Source>,
+    #[arg(long, value_name = "WHERE", value_parser = word_of(&LOBES))]
+    lobes: Option<Lobes>,
     /// How light textures are looked up [default: kernel]
-    #[arg(long, value_enum, value_name = "HOW")]
-    footprint: Option<Lookup>,
+    #[arg(long, value_name = "HOW", value_parser = word_of(&FOOTPRINTS))]
+    footprint: Option<Footprint>,
     /// A fitted table, of any format that `arealight table` writes; the built-in one if absent
     #[arg(long, value_name = "FILE")]
     table: Option<PathBuf>,
-}
-
-/// How edges are integrated.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum Edges {
-    /// float32's own precision, absolute: 1e-6
-    Exact,
-    /// As exact, and as precise relative to lights that look small
-    Difference,
-}
-
-/// Where polygons are clipped.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum Clip {
-    /// At the horizon of the lobe's cosine space; some light leaks in from below the surface
-    Cosine,
-    /// At the surface's horizon as well: nothing leaks
-    Both,
-}
-
-/// Where lobes come from.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum Source {
-    /// The table
-    Table,
-    /// Formulas, without a texture
-    Formula,
-}
-
-/// How specular lobes are integrated.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum Specular {
-    /// By one transformed cosine: an integral a light
-    One,
-    /// By two: two integrals a light, at .6 to .8 times the error
-    Two,
-    /// GGX itself over half vectors of polygons and meshes: closest to lamps, and to brushed metals
-    HalfVectors,
-}
-
-impl From<Specular> for SpecularLobes {
-    fn from(specular: Specular) -> Self {
-        match specular {
-            Specular::One => Self::One,
-            Specular::Two => Self::Two,
-            Specular::HalfVectors => Self::HalfVectors,
-        }
-    }
-}
-
-/// How many lobes are integrated.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum LobeCount {
-    /// One integral a light
-    One,
-    /// Two integrals a light, at .6 to .8 times the error
-    Two,
-}
-
-impl From<LobeCount> for SpecularLobes {
-    fn from(count: LobeCount) -> Self {
-        match count {
-            LobeCount::One => Self::One,
-            LobeCount::Two => Self::Two,
-        }
-    }
-}
-
-/// The level to take for surfaces of these effects (docs/cost.md): of brushed metal, thin films or coats half
-/// vectors.
-pub fn level_for(surfaces: Effects) -> Level {
-    let bent = Effects::ANISOTROPY | Effects::THIN_FILM | Effects::COAT;
-    if surfaces.intersects(bent) { Level::HalfVectors } else { Level::default() }
-}
-
-/// How the part of a texture that a lobe sees is looked up.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum Lookup {
-    /// Three fetches of the image filtered by the lobe's own kernel
-    Kernel,
-    /// One fetch of plain mips, as in Heitz et al. 2016
-    Mips,
 }
 
 /// The names of levels, with hyphens for spaces.
@@ -132,34 +92,24 @@ impl QualityArguments {
 
     /// The level chosen, or the one that fits surfaces of these effects.
     pub fn level_of(&self, surfaces: Effects) -> Level {
-        self.level.unwrap_or_else(|| level_for(surfaces))
+        self.level.unwrap_or_else(|| Level::for_surfaces(surfaces))
     }
 
     /// A level with what was chosen within it.
     pub fn within(&self, level: Level) -> Quality {
         let default = level.quality();
-        let form_factor = match self.form_factor {
-            None => default.form_factor,
-            Some(Edges::Exact) => FormFactor::Exact,
-            Some(Edges::Difference) => FormFactor::Difference,
+        let lobes = self.lobes.unwrap_or(default.lobes);
+        let specular_lobes = match self.specular_lobes.unwrap_or(default.specular_lobes) {
+            SpecularLobes::Two if lobes == Lobes::Formula => SpecularLobes::One, // which it falls back to
+            chosen => chosen,
         };
-        let horizon = match self.horizon {
-            None => default.horizon,
-            Some(Clip::Cosine) => Horizon::Cosine,
-            Some(Clip::Both) => Horizon::Both,
-        };
-        let specular_lobes = self.specular_lobes.map_or(default.specular_lobes, SpecularLobes::from);
-        let lobes = match self.lobes {
-            None => default.lobes,
-            Some(Source::Table) => Lobes::Table,
-            Some(Source::Formula) => Lobes::Formula,
-        };
-        let footprint = match self.footprint {
-            None => default.footprint,
-            Some(Lookup::Kernel) => Footprint::Kernel,
-            Some(Lookup::Mips) => Footprint::Mips,
-        };
-        Quality { form_factor, horizon, specular_lobes, lobes, footprint }
+        Quality {
+            form_factor: self.form_factor.unwrap_or(default.form_factor),
+            horizon: self.horizon.unwrap_or(default.horizon),
+            specular_lobes,
+            lobes,
+            footprint: self.footprint.unwrap_or(default.footprint),
+        }
     }
 
     /// The table chosen.
@@ -182,22 +132,16 @@ pub fn name_of(quality: Quality) -> &'static str {
 
 /// What a level chooses, by the names of its options.
 pub fn said(quality: Quality) -> serde_json::Value {
-    let Quality { form_factor, horizon, specular_lobes, lobes, footprint } = quality;
-    let specular_lobes = match specular_lobes {
-        SpecularLobes::HalfVectors => "half-vectors".to_owned(),
-        fitted => word(fitted),
-    };
+    fn word<T: PartialEq>(choices: &[Choice<T>], chosen: &T) -> &'static str {
+        choices.iter().find(|(.., choice)| choice == chosen).map_or("", |(word, ..)| *word)
+    }
     serde_json::json!({
-        "form_factor": word(form_factor),
-        "horizon": word(horizon),
-        "specular_lobes": specular_lobes,
-        "lobes": word(lobes),
-        "footprint": word(footprint),
+        "form_factor": word(&FORM_FACTORS, &quality.form_factor),
+        "horizon": word(&HORIZONS, &quality.horizon),
+        "specular_lobes": word(&SPECULAR_LOBES, &quality.specular_lobes),
+        "lobes": word(&LOBES, &quality.lobes),
+        "footprint": word(&FOOTPRINTS, &quality.footprint),
     })
-}
-
-fn word(choice: impl std::fmt::Debug) -> String {
-    format!("{choice:?}").to_lowercase()
 }
 
 #[cfg(test)]

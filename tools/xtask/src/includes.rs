@@ -27,14 +27,19 @@ pub fn run(root: &Path) -> Result<bool, TaskError> {
             eprintln!("{LIBRARY}/{name}.glsl:{}: error: {}", violation.line, violation.message);
             good = false;
         }
-        if let Some(messages) = compile_alone(root, name, &host)? {
-            eprintln!("{LIBRARY}/{name}.glsl: error: does not compile on its own:\n{messages}");
-            good = false;
+        for options in OPTIONS {
+            if let Some(messages) = compile_alone(root, name, options, &host)? {
+                eprintln!("{LIBRARY}/{name}.glsl: error: does not compile on its own{options}:\n{messages}");
+                good = false;
+            }
         }
     }
     println!("{} library files checked: {}", texts.len(), if good { "good" } else { "see above" });
     Ok(good)
 }
+
+/// None, and those that decide what there is in files.
+const OPTIONS: [&str; 2] = ["", "\n#define AREALIGHT_MEDIA 1\n#define AREALIGHT_LIGHT_TEXTURES 1"];
 
 /// The definitions that a host would give for every bridge the library declares.
 fn bridges_of_host<'a>(texts: impl Iterator<Item = &'a String>) -> String {
@@ -45,9 +50,9 @@ fn bridges_of_host<'a>(texts: impl Iterator<Item = &'a String>) -> String {
 }
 
 /// What glslangValidator says against a shader that includes just this file, twice.
-fn compile_alone(root: &Path, name: &str, host: &str) -> Result<Option<String>, TaskError> {
+fn compile_alone(root: &Path, name: &str, options: &str, host: &str) -> Result<Option<String>, TaskError> {
     let shader = format!(
-        "#version 450\n\
+        "#version 450{options}\n\
          #extension GL_GOOGLE_include_directive : require\n\
          layout(local_size_x = 1) in;\n\
          #include \"arealight/{name}.glsl\"\n\
@@ -97,7 +102,9 @@ mod tests {
         let unguarded = "float arealight_b() { return 1.0; }\n";
         let unprefixed = "#ifndef AREALIGHT_B_GLSL\n#define AREALIGHT_B_GLSL\n\
             float b() { return 1.0; }\n#endif\n";
-        for bad in [leans, unguarded, unprefixed] {
+        let late = "#ifndef AREALIGHT_B_GLSL\n#define AREALIGHT_B_GLSL\n\
+            #if AREALIGHT_MEDIA\nfloat arealight_b() { return arealight_a(); }\n#endif\n#endif\n";
+        for bad in [leans, unguarded, unprefixed, late] {
             let folder = checkout(&[], &[("a", GOOD), ("b", bad)]);
             assert!(!run(folder.path()).unwrap(), "{bad}");
         }

@@ -58,8 +58,6 @@ fn half_floats_err_by_their_last_bit_at_most() {
 fn what_the_gpu_reads_says_if_a_dip_was_added() {
     for (table, dip) in [(table_of_two(4), 0.0), (resampled(&LightTable::ggx(), 4).unwrap(), 1.0)] {
         assert!(table.texels()[16..32].iter().all(|texel| texel[2] == dip), "{dip}");
-        let glsl = String::from_utf8(write(&table, Target::Glsl)).unwrap();
-        assert!(glsl.contains(&format!("+ node]), {dip:?}, ")), "{glsl}");
         let header = String::from_utf8(write(&table, Target::CHeader(Precision::Half))).unwrap();
         assert!(header.contains(&format!("The dip is {dip}")), "{header}");
     }
@@ -114,10 +112,9 @@ fn an_extension_chooses_what_is_written() {
         assert!(!folder.path().join(name).exists());
         error
     };
-    let expected = "extension `png`: tables are written as .exr, .ktx2, .dds, .h (C), .glsl or .f32 (raw)";
+    let expected = "extension `png`: tables are written as .exr, .ktx2, .dds, .h (C) or .f32 (raw)";
     assert_eq!(refused("b.png", None), expected);
     assert_eq!(refused("b.exr", Some(Precision::Half)), "OpenEXR tables are written in 32-bit floats only");
-    assert_eq!(refused("b.glsl", Some(Precision::Single)), "GLSL tables are written in 16-bit floats only");
 }
 
 #[test]

@@ -19,8 +19,8 @@ use std::sync::Arc;
 pub(super) struct Place {
     /// Of the shade pass, and of the passes of shadows and a medium where there are.
     pub(super) sets: Vec<vk::DescriptorSet>,
-    /// What the place's frame copies the table from.
-    pub(super) staging: Option<Arc<Buffer>>,
+    /// What the place's frame copies the table and blockers from.
+    pub(super) staging: (Option<Arc<Buffer>>, Option<Arc<[Buffer; 2]>>),
     blockers: Option<Arc<[Buffer; 2]>>,
     /// Lights, vertices and shapes.
     lights: [Buffer; 3],
@@ -50,7 +50,7 @@ impl Place {
         let lights = [empty()?, empty()?, empty()?];
         Ok(Self {
             sets,
-            staging: None,
+            staging: (None, None),
             blockers: None,
             lights,
             tile_lists: None,

@@ -3,6 +3,7 @@
 
 #include "arealight/form_factor/difference.glsl"
 #include "arealight/form_factor/quad.glsl"
+#include "arealight/options.glsl"
 #if AREALIGHT_SOLID_ANGLES
 #include "arealight/form_factor/solid_angle.glsl"
 #endif

@@ -2,6 +2,7 @@
 #define AREALIGHT_TUBE_LIGHT_GLSL
 
 #include "arealight/form_factor/tube_horizons.glsl"
+#include "arealight/options.glsl"
 #if AREALIGHT_SOLID_ANGLES
 #include "arealight/form_factor/tube_solid_angle.glsl"
 #endif

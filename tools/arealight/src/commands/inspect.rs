@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::output::print;
 use crate::plots::{self, Kind};
 use crate::progress;
-use crate::quality::LobeCount;
+use crate::quality::{FITTED_LOBES, word_of};
 use arealight::{LightTable, SpecularLobes};
 use arealight_table::TableFile;
 use channels::Channel;
@@ -35,8 +35,8 @@ pub struct Arguments {
     #[arg(long, value_name = "F0", default_value_t = 1.0)]
     f0: f64,
     /// How many lobes stand for the specular one in the picture.
-    #[arg(long, value_enum, value_name = "COUNT", default_value_t = LobeCount::One)]
-    specular_lobes: LobeCount,
+    #[arg(long, value_name = "COUNT", default_value = "one", value_parser = word_of(&FITTED_LOBES))]
+    specular_lobes: SpecularLobes,
     /// Measure the errors of the table, of the table-free formula and of other tables (by one lobe) over
     /// roughness and view angle, and draw these.
     #[arg(long, value_name = "OTHER", num_args = 0.., conflicts_with = "entries")]
@@ -122,7 +122,7 @@ impl Arguments {
     }
 
     fn material(&self) -> Material {
-        Material { f0: self.f0, specular_lobes: self.specular_lobes.into() }
+        Material { f0: self.f0, specular_lobes: self.specular_lobes }
     }
 }
 

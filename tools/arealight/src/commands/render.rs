@@ -97,7 +97,7 @@ pub struct Arguments {
 struct FogArguments {
     /// Fog in the place of the scene's: extinction per unit of length, 0 for none. Its froxels are 8 pixels
     /// wide and high, fewer in pictures less than 768 wide, in 64 slices
-    #[arg(long, value_name = "DENSITY", value_parser = parse_density)]
+    #[arg(long, value_name = "DENSITY", value_parser = parse_density, allow_negative_numbers = true)]
     fog: Option<f32>,
     /// Of fog, the mean cosine of the angle by which it turns light: above 0 forwards
     #[arg(long, value_name = "G", default_value_t = 0.0, requires = "fog", allow_negative_numbers = true,

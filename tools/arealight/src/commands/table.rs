@@ -7,8 +7,7 @@ use arealight::{Horizon, LightTable, SpecularLobes};
 use arealight_fit::report::{COUNT, Errors, Level, SEED, cases, measure};
 use arealight_fit::{Brdf, GgxBrdf};
 use arealight_table::{
-    Adjusted, FileError, MAX_GLSL_SIZE, Precision, TableFile, Target, WriteError, hash, load_published,
-    resampled, rounded,
+    Adjusted, FileError, Precision, TableFile, Target, WriteError, hash, load_published, resampled, rounded,
 };
 use serde_json::json;
 use std::fmt::Write as _;
@@ -28,8 +27,7 @@ enum Command {
 }
 
 /// Read a table in any format, and write it in the one that OUT's extension stands for: .exr (our own), .ktx2
-/// and .dds (2D arrays of six layers, for engines), .h (a C array), .glsl (constants and the bridge, no
-/// texture).
+/// and .dds (2D arrays of six layers, for engines), .h (a C array), .f32 (raw).
 #[derive(clap::Args)]
 struct Convert {
     /// The table: OpenEXR, KTX2 or DDS, told by content; or `built-in`.
@@ -49,7 +47,7 @@ struct Convert {
     #[arg(long, value_enum)]
     format: Option<Floats>,
     /// Nodes a side that are written, 2 to 1024: interpolated bilinearly (`arealight fit --size` is better by
-    /// a little). A .glsl of a larger table has 16 unless given, and 64 at most.
+    /// a little).
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1024))]
     size: Option<u32>,
     /// Measure how far the table is from GGX, and write that beside it.
@@ -65,9 +63,6 @@ enum Floats {
     F16,
     F32,
 }
-
-/// Nodes a side of a table in GLSL that was larger: 5 KiB of constants.
-const GLSL_SIZE: u32 = 16;
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let Command::Convert(arguments) = &arguments.command;
@@ -89,16 +84,7 @@ impl Convert {
 
         // Read, and bring to size
         let (mut file, adjusted) = self.read()?;
-        let size = match (self.size, target) {
-            (Some(size), _) => size,
-            (None, Target::Glsl) => file.table.size().min(GLSL_SIZE),
-            (None, _) => file.table.size(),
-        };
-        if target == Target::Glsl && size > MAX_GLSL_SIZE {
-            let message = format!("{size} nodes a side; GLSL constants hold at most {MAX_GLSL_SIZE}");
-            return Err(Failure::Argument { argument: "--size", message });
-        }
-        if size != file.table.size() {
+        if let Some(size) = self.size.filter(|size| *size != file.table.size()) {
             let table = resampled(&file.table, size);
             let table = table.map_err(|error| Failure::input(&self.input, error))?;
             // Its error was another table's

@@ -3,7 +3,6 @@
 use super::lamps::{self, Edit};
 use super::orbit::Orbit;
 use crate::picture::MAX_STOPS;
-use crate::quality::level_for;
 use arealight::Level;
 use arealight_scene::{Camera, Scene, SceneFog};
 use std::str::FromStr;
@@ -194,7 +193,7 @@ impl State {
         let fog = scene.fog.unwrap_or(SceneFog { density, anisotropy: 0.3, albedo: 1.0 });
         Self {
             orbit: home,
-            level: level_for(scene.surfaces()),
+            level: Level::for_surfaces(scene.surfaces()),
             mode: Mode::Picture,
             divider: 0.5,
             exposure,

@@ -3,7 +3,7 @@
 use crate::common::{self, printed, run};
 use arealight::gpu::{GpuLight, GpuShape, ShadeConstants};
 use arealight::kernels::Kernel;
-use serde_json::Value;
+use serde_json::{Value, json};
 use sha2::{Digest as _, Sha256};
 use std::mem::offset_of;
 use std::path::Path;
@@ -76,14 +76,17 @@ fn the_manifest_says_what_a_host_defines_and_binds() {
     };
     let table = bridge("arealight_bridge_table");
     assert_eq!(table["prototype"], "vec4 arealight_bridge_table(int layer, ivec2 texel)");
-    assert_eq!(table["needed_with"], "always");
-    assert_eq!(bridge("arealight_bridge_light_texture")["needed_with"], "AREALIGHT_LIGHT_TEXTURES 1");
     let surface = bridge("arealight_bridge_surface");
     assert_eq!(
-        (&surface["declared_in"], &surface["needed_with"]),
+        (&surface["declared_in"], &surface["declared_with"]),
         (&Value::from("kernels/g_buffer.glsl"), &Value::from("AREALIGHT_HOST_G_BUFFER 1"),)
     );
-    let needed = |header: &str| manifest["headers"][header].as_array().unwrap().len();
+    let needed = |header: &str| manifest["headers"][header].as_object().unwrap().len();
+    let options = |bridge: &str| manifest["headers"]["arealight/arealight.glsl"][bridge].clone();
+    assert_eq!(options("arealight_bridge_table"), json!(["always"]));
+    assert_eq!(options("arealight_bridge_profile"), json!(["AREALIGHT_SHAPED 1"]));
+    let outlines = ["AREALIGHT_MESHES 1", "AREALIGHT_POLYGONS 1", "AREALIGHT_SHAPED 1"];
+    assert_eq!(options("arealight_bridge_vertex"), json!(outlines));
     // All but those of kernels
     let bridges = manifest["bridges"].as_array().unwrap();
     let of_kernels = bridges

@@ -42,8 +42,6 @@ fn sources_and_sizes() {
     assert!(
         std::fs::read_to_string(folder.join("t.h")).unwrap().contains("#define AREALIGHT_TABLE_SIZE 8\n")
     );
-    let said = convert(folder, &["built-in", "t.glsl"]);
-    assert!(said.starts_with("wrote t.glsl: 16 x 16 nodes"), "{said}");
     convert(folder, &["built-in", "t.dds", "--size", "22"]);
     let file = TableFile::load(&folder.join("t.dds")).unwrap();
     assert_eq!(
@@ -99,7 +97,6 @@ fn what_cannot_be_done_is_said_before_anything_is_written() {
     let folder = folder.path();
     refuse(folder, &["built-in", "t.png"], 2, "extension `png`: tables are written as .exr, .ktx2, .dds");
     refuse(folder, &["built-in", "t.exr", "--format", "f16"], 2, "OpenEXR tables are written in 32-bit");
-    refuse(folder, &["built-in", "t.glsl", "--size", "65"], 2, "GLSL constants hold at most 64");
     refuse(folder, &["built-in", "t.exr", "--size", "1"], 2, "--size");
     refuse(folder, &["missing.exr", "t.exr"], 3, "missing.exr");
     std::fs::write(folder.join("noise.ktx2"), "noise").unwrap();

@@ -11,7 +11,7 @@ use arealight_scene::LoadOptions;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Draw the default level, what engines ship with the published table, and the truth side by side.
+/// Draw the default level, what engines ship, with a table of published quality, and the truth side by side.
 ///
 /// `.png`: a strip of the three pictures with maps of the differences from the truth. `.gif`: a film in which
 /// the scene's lights swing, ours next to the truth. Polygon lights swing about the vertical axis through the

@@ -41,8 +41,7 @@ const CONVENTIONS: [&str; 7] = [
     "Right-handed; matrices are column-major and act on column vectors; angles in radians.",
     "roughness is perceptual, alpha = roughness^2; GGX with height-correlated Smith masking-shadowing and \
     Schlick's Fresnel term.",
-    "A light's front is the right-hand side of its vertex order: seen from the front, the vertices run \
-     counter-clockwise.",
+    "A light's front is the side from which its vertices run counter-clockwise.",
     "Positions are relative to an origin near the camera that the host chooses; a light's vertices are \
     relative to the light's center.",
     "The table's axes are roughness (x) and sqrt(1 - cos theta_view) (y), nodes at both ends; texels are \
@@ -74,8 +73,7 @@ fn bridge(bridge: &Bridge) -> Value {
         "prototype": bridge.prototype,
         "returns": bridge.comment,
         "declared_in": bridge.file,
-        // A shader that includes the file, or one that includes it, defines the bridge...
-        "needed_with": bridge.toggle.as_ref().map_or("always".to_owned(), |toggle| format!("{toggle} 1")),
+        "declared_with": bridge.toggle,
     })
 }
 

@@ -1,5 +1,5 @@
-//! Ours, a yardstick with the published table, and the truth, side by side or below each other, with maps of
-//! the differences.
+//! Ours, a yardstick with a table of published quality, and the truth, side by side or below each other, with
+//! maps of the differences.
 
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
@@ -50,8 +50,8 @@ fn map(pictures: &Pictures, reflected: &[DVec3], crop: [u32; 4]) -> Vec<Colour> 
 fn caption(picture: &Picture) -> String {
     let name = match picture.name.split_once(", published") {
         None => "Arealight",
-        Some(("clip by cases", _)) => "16 cases, published table",
-        Some(_) => "sphere, published table",
+        Some(("clip by cases", _)) => "16 cases, published quality",
+        Some(_) => "sphere, published quality",
     };
     format!("{name}: {}", percent(picture.error.rmse))
 }
