@@ -65,15 +65,17 @@ vec3 crossing(ArealightQuad quad, int above) {
 
 // The arcs of a quad above the horizon where the edges of all invocations, none or some are acute.
 vec3 arcs_above(ArealightQuad quad, int path) {
-    vec4 products = vec4(dot(quad.a, quad.b), dot(quad.b, quad.c), dot(quad.c, quad.d), dot(quad.d, quad.a));
-    vec3 arcs = vec3(0.0, 0.0, min(min(products.x, products.y), min(products.z, products.w)));
+    ArealightQuad unit =
+        ArealightQuad(quad.a * inversesqrt(dot(quad.a, quad.a)), quad.b * inversesqrt(dot(quad.b, quad.b)),
+                      quad.c * inversesqrt(dot(quad.c, quad.c)), quad.d * inversesqrt(dot(quad.d, quad.d)));
+    vec4 cosine = vec4(dot(unit.a, unit.b), dot(unit.b, unit.c), dot(unit.c, unit.d), dot(unit.d, unit.a));
+    vec3 arcs = vec3(0.0, 0.0, min(min(cosine.x, cosine.y), min(cosine.z, cosine.w)));
     if (path != PATH_NOT_ACUTE) {
-        arcs += arealight_acute_arcs(quad, products);
+        arcs += arealight_acute_arcs(unit, cosine);
     }
     if (path != PATH_ACUTE) {
-        vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c),
-            d = arealight_unit(quad.d);
-        arcs += arealight_arc(a, b) + arealight_arc(b, c) + arealight_arc(c, d) + arealight_arc(d, a);
+        arcs += arealight_arc(unit.a, unit.b) + arealight_arc(unit.b, unit.c) + arealight_arc(unit.c, unit.d)
+              + arealight_arc(unit.d, unit.a);
     }
     return arcs;
 }

@@ -32,10 +32,10 @@ of Heitz et al. 2016. The bits of each result are judged against a reference of 
 4 x 2^-24 of their distance.
 3. *Forward*: error at most 1e-6 + 1e-7 / rho, rho being the distance to the polygon over that to its \
 farthest vertex.
-4. *Small light*, of the difference form: error at most 1e-6 of area / (pi distance^2), out to any distance.
+4. *Small light*, of one wholly above the horizon at n times its extent: error at most 8e-7 n of area / (pi \
+distance^2); of the difference form 1e-6, out to any distance and across the horizon.
 
-The yardsticks are held to the first three, as the levels `exact` are; `-` is a family whose polygons they \
-don't take.
+The yardsticks are held to the promises of the levels `exact`; `-` is a family whose polygons they don't take.
 
 The table gives the largest backward error; **bold** is a promise broken. A forward error \
 near 1 beside a small backward one is contact: on a light's surface the form factor jumps, and no float32 \

@@ -17,7 +17,7 @@
 //
 // G is smooth on [0, 1], so one rational function serves every angle up to pi; and where a and b are nearly
 // opposite, a x m and y are as small as each other, so that rounding is as if an end had moved by 2^-24.
-// Nothing branches.
+// Acute arcs have a x (b - a), whose rounding is as small as they are. Nothing branches.
 
 // What the sum of arcs is multiplied with.
 const float AREALIGHT_PER_ARC = -AREALIGHT_INVERSE_TWO_PI;
@@ -36,8 +36,9 @@ vec3 arealight_unit(vec3 v) {
 // sqrt(AREALIGHT_LEAST_SQUARE) to 2.
 vec3 arealight_arc(vec3 a, vec3 b) {
     vec3 middle = a + b;
-    vec3 s = cross(a, middle);
-    float y = sqrt(dot(middle, middle) + AREALIGHT_LEAST_SQUARE);
+    float square = dot(middle, middle);
+    vec3 s = cross(a, b + (square > 2.0 ? -1.0 : 1.0) * a);
+    float y = sqrt(square + AREALIGHT_LEAST_SQUARE);
     return s * (3.1415925 + y * (1.1001613 + y * (0.028413607 - y * 0.00084628159)))
          / (y + y * y * (0.66850024 + y * 0.096849829));
 }
@@ -64,7 +65,8 @@ const float AREALIGHT_HALF_TURN = 2.4e-7;
 // other arcs on the other side, of neither.
 vec3 arealight_horizon_arc(vec2 a, vec2 b, float half_turn, float front) {
     float cosine = dot(a, b);
-    float s = a.x * b.y - a.y * b.x;
+    vec2 along = b - a;
+    float s = a.x * along.y - a.y * along.x;
     float acute = s * arealight_acute_weight(abs(cosine));
     float side = front != 0.0 ? -front : abs(s) > AREALIGHT_HALF_TURN ? s : half_turn;
     return vec3(0.0, 0.0, cosine < 0.0 ? (side < 0.0 ? -AREALIGHT_PI : AREALIGHT_PI) - acute : acute);

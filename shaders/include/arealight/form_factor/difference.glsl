@@ -7,7 +7,7 @@
 // The difference form: form factors of small and distant polygons with relative precision. It keeps the
 // promises of form_factor/quad.glsl, and
 //
-//   4. For a light within a fifth of its distance d of its anchor, the error is at most 1e-6 A / (pi d^2),
+//   5. For a light within a fifth of its distance d of its anchor, the error is at most 1e-6 A / (pi d^2),
 //      out to any distance; A is its area, or for a sliver .24 of its extent times its perimeter.
 //
 // A polygon is given by an anchor near it and its vertices' offsets from that. What the arcs of a small

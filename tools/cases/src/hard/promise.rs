@@ -22,15 +22,19 @@ pub struct Promises {
     /// What is added to it, over the distance to the polygon as a part of the farthest vertex's distance.
     pub contact: f64,
     /// For small lights, the largest error as a part of area / (pi distance²), what the light would send if
-    /// it stood upright at the zenith. `None` promises nothing more for them.
-    pub small_light: Option<f64>,
+    /// it stood upright at the zenith.
+    pub small_light: f64,
+    /// What is added to it for each time that the light is as far as large; it is promised only of those
+    /// wholly above the horizon, then.
+    pub small_light_growth: f64,
 }
 
 impl Promises {
     /// [`FormFactor::Exact`](arealight::FormFactor::Exact).
-    pub const EXACT: Self = Self { backward: 6e-7, forward: 1e-6, contact: 1e-7, small_light: None };
+    pub const EXACT: Self =
+        Self { backward: 6e-7, forward: 1e-6, contact: 1e-7, small_light: 0.0, small_light_growth: 8e-7 };
     /// [`FormFactor::Difference`](arealight::FormFactor::Difference).
-    pub const DIFFERENCE: Self = Self { small_light: Some(1e-6), ..Self::EXACT };
+    pub const DIFFERENCE: Self = Self { small_light: 1e-6, small_light_growth: 0.0, ..Self::EXACT };
 
     /// The largest error; infinite in contact.
     pub fn forward_bound(&self, reference: &Reference) -> f64 {
@@ -40,7 +44,8 @@ impl Promises {
     /// The largest error of a small light, where there is a promise for this one.
     pub fn small_light_bound(&self, reference: &Reference) -> Option<f64> {
         let unit = reference.small_light_unit?;
-        Some(self.small_light? * unit)
+        let grown = self.small_light_growth * reference.extents_away;
+        (reference.is_above || grown == 0.0).then(|| (self.small_light + grown) * unit)
     }
 }
 

@@ -26,6 +26,10 @@ pub struct Reference {
     /// the area that four units in the last place of its offsets are a millionth of: no better is its area
     /// known.
     pub small_light_unit: Option<f64>,
+    /// How many times as far as its farthest vertex is from its anchor the polygon is.
+    pub extents_away: f64,
+    /// Whether every vertex is above the horizon.
+    pub is_above: bool,
 }
 
 impl Reference {
@@ -80,6 +84,8 @@ impl Reference {
             distance,
             area,
             small_light_unit: (extent < SMALL * farthest).then(|| small_area / (PI * distance * distance)),
+            extents_away: distance / extent,
+            is_above: offsets.iter().all(|offset| (anchor + *offset).z > 0.0),
         };
         (reference, closings)
     }
