@@ -211,7 +211,7 @@ pub fn run(
             })
             .collect();
         // A lobe counts by what it sees of a light, not by how much of it the surface reflects
-        let albedos: Vec<f64> = poses.iter().map(|pose| pose.albedo(table)).collect();
+        let albedos: Vec<f64> = poses.iter().map(|pose| pose.lobe(table).1).collect();
         for (name, layers) in [(JUDGED_PICTURES, JUDGED), (SPOT_PICTURE, SPOT..SPOT + 1)] {
             let points = poses.iter().flat_map(|pose| layers.clone().map(|layer| point(pose, layer)));
             let points: Vec<EvalPoint> = points.collect();

@@ -99,18 +99,13 @@ impl Footprints {
         for method in &METHODS {
             let _ = writeln!(text, "  {:<10}  {}", method.name, method.description);
         }
-        let _ = writeln!(
-            text,
-            "\n{JUDGED_PICTURES}: nRMSE %; median %, ! where the bar is missed\n{}",
-            self.overview("!").to_text()
-        );
+        let overview = self.overview("!").to_text();
+        let _ =
+            writeln!(text, "\n{JUDGED_PICTURES}: nRMSE %; median %, ! where the bar is missed\n{overview}");
         let _ = writeln!(text, "the same: mean over the true mean, - 1, in %\n{}", self.biases().to_text());
         let _ = writeln!(text, "a bright spot: nRMSE %; median %\n{}", self.spots().to_text());
-        let _ = writeln!(
-            text,
-            "a thousand times its size away: mean over the true mean\n{}",
-            self.far_table().to_text()
-        );
+        let far = self.far_table().to_text();
+        let _ = writeln!(text, "a thousand times its size away: mean over the true mean\n{far}");
         match self.shortfalls().count() {
             0 => text + "Every level is within its bars.\n",
             count => format!("{text}LEVELS MISS THEIR BARS in {count} places: see above.\n"),

@@ -2,6 +2,7 @@
 
 use arealight_benches::pictures;
 use arealight_engine::{Engine, Of, SourceImage, SourceTexels};
+use arealight_oracle::polygon::vector_form_factor;
 use arealight_oracle::shading::footprint;
 use arealight_oracle::texture::Pyramid;
 use arealight_tests::prelude::*;
@@ -32,11 +33,8 @@ fn engine() -> Option<TestEngine> {
     let white = picture(&|_, _| [1.0; 4]);
     let split = picture(&split);
     let huge = picture(&|column, row| [if (column + row) % 2 == 0 { 65_504.0 } else { 0.0 }; 4]);
-    let image = |texels| SourceImage {
-        texels: SourceTexels::Linear(texels),
-        size: [SIZE, SIZE],
-        part: TexturePart::default(),
-    };
+    let part = TexturePart::default();
+    let image = |texels| SourceImage { texels: SourceTexels::Linear(texels), size: [SIZE, SIZE], part };
     let size = PyramidSize::new(SIZE).unwrap();
     engine.load_textures(size, &[image(&white), image(&split), image(&huge)]).unwrap();
     Some(engine)
@@ -162,19 +160,11 @@ fn lookups_are_those_of_their_float64_twins() {
         for (index, (point, (answer, plain))) in given.iter().zip(answers.iter().zip(&plain)).enumerate() {
             let light = &point.light;
             let map = light.texture.as_ref().unwrap().map(&light.shape).unwrap();
-            let [expected, other] = FOOTPRINTS
-                .map(|of| {
-                    let color = footprint::seen(of, &map, &pyramid);
-                    let answer = color * f64::from(plain.x);
-                    (answer, of == one)
-                })
-                .into_iter()
-                .fold(
-                    [DVec3::ZERO; 2],
-                    |[expected, other], (color, is_it)| {
-                        if is_it { [color, other] } else { [expected, color] }
-                    },
-                );
+            let vector = vector_form_factor(light.shape.vertices());
+            let vector = vector * vector.z.signum();
+            let answer_of = |of| footprint::seen(of, &map, vector, &pyramid) * f64::from(plain.x);
+            let expected = answer_of(one);
+            let other = answer_of(FOOTPRINTS[usize::from(one == FOOTPRINTS[0])]);
             // Levels' share and place to 1/256 between texels that differ by one, and of A and B as much
             let bound = 1e-2 * f64::from(plain.x) + 2e-5;
             for axis in 0..3 {
@@ -199,10 +189,8 @@ fn downloaded(engine: &Engine, layer: u32) -> Pyramid {
 fn twice_the_radiance_is_twice_the_answer() {
     let Some(engine) = engine() else { return };
     let once = points(2, SPLIT, 300);
-    let mut twice = once.clone();
-    for point in &mut twice {
-        point.light.radiance = Vec3::splat(2.0);
-    }
+    let bright = |point: &EvalPoint| Light { radiance: Vec3::splat(2.0), ..point.light.clone() };
+    let twice: Vec<_> = once.iter().map(|one| EvalPoint { light: bright(one), ..one.clone() }).collect();
     for footprint in FOOTPRINTS {
         let quality = Quality { footprint, ..Quality::default() };
         let (once, twice) = (engine.eval(&once, quality).unwrap(), engine.eval(&twice, quality).unwrap());
@@ -279,30 +267,31 @@ fn sweeps_have_no_seams() {
     const STEPS: u32 = 2000;
     let Some(engine) = engine() else { return };
     let share = |step: u32| f64::from(step) / f64::from(STEPS);
-    // Roughness from a mirror to the end; a hit point that crosses the image and leaves it; the surface that
-    // rises past the light's plane
+    // Roughness from a mirror to the end; a hit point that crosses the image and leaves it; a light that
+    // sets; the surface that rises past the light's plane
     let roughness: Vec<EvalPoint> =
         (0..=STEPS).map(|step| screen((0.03 + 0.97 * share(step)).powi(2), 0.3, 1.0)).collect();
     let across: Vec<EvalPoint> = (0..=STEPS).map(|step| screen(0.2, 3.0 * share(step) - 1.5, 1.0)).collect();
-    let through: Vec<EvalPoint> = (0..=STEPS)
-        .map(|step| {
-            let mut point = screen(0.3, 0.2, 1.0);
+    let moved = |surface, by: &dyn Fn(f64) -> DVec3| -> Vec<EvalPoint> {
+        let at = |step| {
+            let mut point = EvalPoint { surface, ..screen(0.3, 0.2, 1.0) };
             point.light.two_sided = true;
-            for vertex in point.light.shape.vertices_mut() {
-                vertex.y += 2.0 * share(step) - 3.0;
-            }
+            point.light.shape.vertices_mut().iter_mut().for_each(|vertex| *vertex += by(share(step)));
             point
-        })
-        .collect();
+        };
+        (0..=STEPS).map(at).collect()
+    };
+    let setting = moved(lambert_surface(), &|share| DVec3::Z * (-3.0 * share));
+    let through = moved(glossy_surface(0.3), &|share| DVec3::Y * (2.0 * share - 3.0));
     for footprint in FOOTPRINTS {
         let quality = Quality { footprint, ..Quality::default() };
         // A thousandth of the way moves the answer by a few thousandths; a seam between levels or parts would
         // be a step as large as the image's contrast
         let bound = 0.01;
-        let step = largest_step(&engine, &roughness, quality);
-        assert!(step < bound, "{footprint:?}: roughness: {step}");
-        let step = largest_step(&engine, &across, quality);
-        assert!(step < bound, "{footprint:?}: across: {step}");
+        for (name, sweep) in [("roughness", &roughness), ("across", &across), ("setting", &setting)] {
+            let step = largest_step(&engine, sweep, quality);
+            assert!(step < bound, "{footprint:?}: {name}: {step}");
+        }
         // Where the plane passes the point the light's side changes, and with it which points are lit: at one
         // point only
         let answers = engine.eval(&through, quality).unwrap();
@@ -364,8 +353,7 @@ fn a_far_light_shows_its_mean() {
     for footprint in FOOTPRINTS {
         for surface in [lambert_surface(), glossy_surface(0.5)] {
             let ratio = far_light(&engine, &surface, footprint);
-            // Of an image whose halves are the same about its middle, the mean is seen exactly but for
-            // binary16's and the sampler's rounding
+            // Of halves alike about the middle the mean, but for binary16's and the sampler's rounding
             assert!((ratio - Vec3::ONE).abs().max_element() < 4e-3, "{footprint:?}: {ratio}");
         }
     }

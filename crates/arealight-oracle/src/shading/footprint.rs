@@ -1,10 +1,11 @@
 //! What a lobe sees of an image by lookups in its pyramid: the float64 twin of `footprint.glsl`.
 
-use super::shown::box_coordinate;
+use super::shown::{box_coordinate, point};
 use crate::texture::Pyramid;
 use arealight::pyramid::FINEST_HEIGHT;
 use arealight::{Footprint, TextureMap};
 use glam::{DVec2, DVec3, DVec4};
+use std::f64::consts::PI;
 
 /// Where A and B are looked up, and how they are weighed: `ArealightImagePlace`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,16 +18,13 @@ pub struct Place {
     pub weight: f64,
     /// Of B along rows and columns.
     pub slope: DVec2,
-    /// The least of the sum over A: below it A fills the sum up.
+    /// The least of the sum over A's share of it: below it A fills the sum up.
     pub least: f64,
 }
 
-/// From this cotangent of the plane's angle down a horizon moves the place.
-const STEEP: f64 = 1.256;
-
 impl Place {
-    /// That of an image in a lobe's cosine space, whose box is all of the layer.
-    pub fn new(footprint: Footprint, map: &TextureMap) -> Self {
+    /// That of an image in a lobe's cosine space, all of a layer, on a light of that clipped form factor.
+    pub fn new(footprint: Footprint, map: &TextureMap, vector: DVec3) -> Self {
         let cross = map.axis_u.cross(map.axis_v);
         let area = cross.length();
         let toward = cross / area * map.corner.dot(cross).signum();
@@ -34,34 +32,38 @@ impl Place {
         let rise = (1.0 - toward.z * toward.z).max(1e-12).sqrt();
         let up = (DVec3::Z - toward * toward.z) / rise;
         let s = toward.z / rise;
-        let corners =
-            [0.0, map.axis_u.z, map.axis_v.z, map.axis_u.z + map.axis_v.z].map(|z| z + map.corner.z);
         let [lowest, highest] =
-            [f64::min, f64::max].map(|pick| corners.into_iter().reduce(pick).unwrap_or(0.0));
-        let below = (-10.0 * lowest / highest.max(1e-30)).clamp(0.0, 1.0);
-        let turned = below.max((1.0 - 1.75 * s).clamp(0.0, 1.0));
-        let turned = if footprint == Footprint::Mips { 0.0 } else { turned };
-        let v = (STEEP - s).max(0.0);
-        let moved = turned * 0.83 * v * v / (v + 0.653);
-        let cut = if s > STEEP {
-            DVec2::new(s, 1.0)
-        } else {
-            DVec2::new(1.0, STEEP.recip() - 0.045 * v / (v + 1.438))
-        };
-        let weights = DVec2::new(toward.z, rise).lerp(cut.normalize_or(DVec2::X), turned);
+            [f64::min, f64::max].map(|pick| map.corner.z + pick(map.axis_u.z, 0.0) + pick(map.axis_v.z, 0.0));
+        let below = (-2.5 * lowest / highest.max(1e-30)).clamp(0.0, 1.0);
+        let facing = vector.dot(toward).abs().max(1e-30);
+        let mean = box_coordinate(map, vector * (height / facing)).clamp(DVec2::ZERO, DVec2::ONE);
+        let mean = point(map, DVec2::splat(0.5).lerp(mean, below));
+        let foot = height * toward;
+        let square = mean.length_squared() / area;
+        let seen = (vector.length() * (PI * square / facing).sqrt()).min(1.0);
+        let far = 0.9 * mean.z.max(1e-30) / (mean.z - foot.z).max(1e-30);
+        let share = (s.max(0.0) + 1.2 / square.sqrt()).min(1.0).min(far);
+        let turned = below * (1.0 - 0.625 * s).clamp(0.0, 1.0);
+        let cut = share.min(1.15 * seen.powi(3) / square);
+        let [share, turned] =
+            if footprint == Footprint::Mips { [1.0, 0.0] } else { [share + turned * (cut - share), turned] };
+        let place = mean.lerp(foot, share) + 0.24 * turned * seen * area.sqrt() * up;
+        let height = (share * (square - share * mean.distance_squared(foot) / area).max(0.0)).sqrt();
+        let high = (place.z / rise / area.sqrt()).max(1e-12);
+        let weights = DVec2::new(high, (1.0 + turned * (seen - 1.0)) * height).normalize_or(DVec2::X);
         Self {
-            coordinate: box_coordinate(map, height * (toward + moved * up)),
-            height: height / area.sqrt() * (1.0 + (0.963 * moved).powi(2)).sqrt(),
+            coordinate: box_coordinate(map, place),
+            height,
             weight: weights.x,
             slope: weights.y / area.sqrt() * DVec2::new(up.dot(map.axis_u), up.dot(map.axis_v)),
-            least: 0.03 + 0.27 * below,
+            least: 0.03 + 0.37 * below,
         }
     }
 
     /// The sum over A and B, of colours and of what is covered.
     fn weighed(&self, [a, b_u, b_v]: [DVec4; 3]) -> DVec4 {
         let slope = self.slope.x * b_u + self.slope.y * b_v;
-        let most = (self.weight - DVec4::W * self.least) * a / (-slope).max(DVec4::splat(1e-30));
+        let most = self.weight * (1.0 - DVec4::W * self.least) * a / (-slope).max(DVec4::splat(1e-30));
         self.weight * a + most.min_element().min(1.0) * slope
     }
 }
@@ -76,9 +78,9 @@ fn kernel_coordinate(place: DVec2) -> DVec2 {
     DVec2::new(along(place.x), along(place.y))
 }
 
-/// The mean colour that a lobe sees of an image whose box is all of the layer, by Lambert's lobe.
-pub fn seen(footprint: Footprint, map: &TextureMap, pyramid: &Pyramid) -> DVec3 {
-    let mut place = Place::new(footprint, map);
+/// The mean colour that Lambert's lobe sees of an image, all of a layer, on a light of that form factor.
+pub fn seen(footprint: Footprint, map: &TextureMap, vector: DVec3, pyramid: &Pyramid) -> DVec3 {
+    let mut place = Place::new(footprint, map, vector);
     let height = place.height * f64::from(pyramid.size().side(0));
     let inside = place.coordinate.clamp(DVec2::ZERO, DVec2::ONE);
     if footprint == Footprint::Mips {

@@ -49,22 +49,13 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// M⁻¹ of the surface's one lobe.
-    pub fn inverse(&self, table: &LightTable) -> DMat3 {
+    /// M⁻¹ of the surface's one lobe, and what that reflects of a white sky, by the table.
+    pub fn lobe(&self, table: &LightTable) -> (DMat3, f64) {
         if self.surface.f0 == DVec3::ZERO {
-            DMat3::IDENTITY
-        } else {
-            table.lookup(self.surface.alpha.sqrt(), self.view.z).inverse
+            return (DMat3::IDENTITY, 1.0);
         }
-    }
-
-    /// What the surface's one lobe reflects of a white sky, by the table.
-    pub fn albedo(&self, table: &LightTable) -> f64 {
-        if self.surface.f0 == DVec3::ZERO {
-            1.0
-        } else {
-            table.lookup(self.surface.alpha.sqrt(), self.view.z).albedo
-        }
+        let lobe = table.lookup(self.surface.alpha.sqrt(), self.view.z);
+        (lobe.inverse, lobe.albedo)
     }
 
     /// How many times as wide as high the light is.
@@ -94,7 +85,7 @@ pub fn poses(family: Family, count: usize, seed: u64, table: &LightTable) -> Vec
         let pose = pose(&mut random, family);
         let above = pose.vertices.iter().all(|vertex| vertex.z > 0.0);
         if above != (family == Family::Horizon)
-            && transformed_form_factor(&pose.inverse(table), &pose.vertices) > 1e-3
+            && transformed_form_factor(&pose.lobe(table).0, &pose.vertices) > 1e-3
         {
             poses.push(pose);
         }
@@ -211,11 +202,11 @@ impl Bar {
     }
 
     /// That of the kernel on a family, with pictures such as [`crate::texture::Texture::checker`], `gradient`
-    /// and `noise`. There is none at the horizon, where what is seen of a light changes within a footprint,
-    /// and none for a yardstick.
+    /// and `noise`. At the horizon few poses before mirrors decide the first. There is none for a yardstick.
     pub fn of(footprint: Footprint, family: Family) -> Option<Self> {
         let (rmse, median) = match (footprint, family) {
-            (Footprint::Mips, _) | (_, Family::Horizon) => return None,
+            (Footprint::Mips, _) => return None,
+            (Footprint::Kernel, Family::Horizon) => (45.0, 2.5),
             (Footprint::Kernel, Family::Sharp) => (7.5, 2.5),
             (Footprint::Kernel, Family::Rough) => (4.0, 1.0),
             (Footprint::Kernel, Family::Diffuse) => (2.5, 1.0),

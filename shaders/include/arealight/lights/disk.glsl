@@ -68,9 +68,17 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalDisk local) {
 vec3 arealight_image_average(mat3 space, ArealightLocalDisk local, vec3 vector) {
 #if AREALIGHT_LIGHT_TEXTURES
     if (AREALIGHT_HAS_TEXTURED_DISKS && local.image != AREALIGHT_NO_IMAGE) {
-        vec3 center = space * local.center;
         ArealightImage image = arealight_disk_image(local.image, local.axis_u, local.axis_v);
-        return arealight_footprint(arealight_lobe_image(image, center, space));
+        vec3 center = space * local.center;
+        ArealightLobeImage seen = arealight_lobe_image(image, center, space);
+        // Towards the middle of what is above the horizon, to .01 of a radius
+        mat2x3 axes = space * mat2x3(local.axis_u, local.axis_v);
+        vec2 rise = vec2(axes[0].z, axes[1].z);
+        float most = max(length(rise), AREALIGHT_TINY);
+        float above = clamp(center.z / most, -1.0, 1.0);
+        center += (1.0 - above) * (0.424 - 0.076 * above) / most * (axes * rise);
+        vector = center * (vector.z / max(center.z, AREALIGHT_TINY));
+        return arealight_footprint(seen, vector);
     }
 #endif
     return vec3(1.0);

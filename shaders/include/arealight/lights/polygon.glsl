@@ -206,7 +206,7 @@ vec3 arealight_image_average(mat3 space, ArealightLocalPolygon local, vec3 vecto
 #if AREALIGHT_LIGHT_TEXTURES
     if (AREALIGHT_HAS_TEXTURED_POLYGONS && local.image.layer != AREALIGHT_NO_IMAGE) {
         return arealight_footprint(arealight_lobe_image(local.image, space * local.center, space
-                                                        * local.to_frame));
+                                                        * local.to_frame), vector);
     }
 #endif
     return vec3(1.0);

@@ -8,17 +8,16 @@
 //
 // In a lobe's cosine space, with q the foot of the perpendicular from the point onto the light's plane and h
 // its length, a place x of the plane, from q, counts (c + b . x) h / (x^2 + h^2)^2: c + b . x is its height.
-// So the mean colour is a ratio of two linear forms,
+// So the mean colour is a ratio of two linear forms, of the image over what the light covers:
 //
-//     (c A + h b . B) of the image over the same of what the light covers,
-//     A = L * K, B = L * x K / h, K = h^2 / (pi (x^2 + h^2)^2)
+//     c A + h b . B,  A = L * K,  B = L * x K / h,  K = h^2 / (pi (x^2 + h^2)^2)
 //
 // with convolutions over the image, which is zero outside: K is that of Heitz et al. 2016 (eq. 35), B its
 // companion. Both are filtered beforehand for heights an octave apart, with coverage in alpha
 // (texture_kernel.comp), so three fetches are exact for a Lambert surface whose horizon does not cut the
 // light, but for the filter: 2 % of the mean, .5 % on images like noise. A lobe's kernel is not round on the
-// light as the filter's is. Where the horizon cuts, the weight would be negative below it: another place,
-// height and weight stand for what is above (arealight_image_place). Errors are in docs/textures.md.
+// light as the filter's is. Another place, height and weight stand for what is above a horizon that cuts,
+// where the weight would be negative below (arealight_image_place). Errors are in docs/textures.md.
 
 // The height of level 0, in texels along the layer's longer side.
 const float AREALIGHT_FINEST_HEIGHT = 6.0;
@@ -83,43 +82,56 @@ struct ArealightImagePlace {
     float height;    // in units in which the layer's area is 1
     float weight;    // of A
     vec2 slope;      // of B
-    float least;     // of the sum over A
+    float least;     // of the sum over A's share of it
 };
 
-// The place that stands for the clamped weight. With s = c / (|b| h) the unclamped one has the foot, h and
-// (s, 1); from s = 1.26 down the foot moves along b by Q h, and h grows. The rational functions were found by
-// search, against sums over what is above the horizon; they come in as the lowest corner goes below it.
-ArealightImagePlace arealight_image_place(ArealightLobeImage image) {
-    const float STEEP = 1.256;
+// The place that stands for the clamped weight: on the way to the foot from the light's middle or, if it is
+// cut, from the mean of what is seen, to which the clipped form factor `vector` points; with K's value and
+// slope there. It stays as near as the filter is fine, and over the horizon. What is cut is as large as a
+// square of the side `seen`: the kernel is no higher than sqrt(1.15 seen^3), lies .24 of the side farther up,
+// and B counts `seen`. The numbers were found by search, against sums over what is above.
+ArealightImagePlace arealight_image_place(ArealightLobeImage image, vec3 vector) {
     vec3 normal = cross(image.axis_u, image.axis_v);
     float area = max(sqrt(dot(normal, normal)), 1e-30);
+    float scale = inversesqrt(area);
     float distance = dot(image.corner, normal);
     float height = max(abs(distance) / area, 1e-30);
     // How steep the plane is, and how the lobe's height rises over it
     float cosine = (distance < 0.0 ? -normal.z : normal.z) / area;
     float to_rise = inversesqrt(max(1.0 - cosine * cosine, 1e-12));
+    vec2 rise = vec2(image.axis_u.z, image.axis_v.z);
+    float lowest = image.corner.z + min(rise.x, 0.0) + min(rise.y, 0.0);
+    float highest = image.corner.z + max(rise.x, 0.0) + max(rise.y, 0.0);
+    bool is_mips = AREALIGHT_FOOTPRINT == AREALIGHT_FOOTPRINT_MIPS;
+    float below = is_mips ? 0.0 : clamp(-2.5 * lowest / max(highest, 1e-30), 0.0, 1.0);
     float s = cosine * to_rise;
-    float lowest = image.corner.z + min(image.axis_u.z, 0.0) + min(image.axis_v.z, 0.0);
-    float highest = image.corner.z + max(image.axis_u.z, 0.0) + max(image.axis_v.z, 0.0);
-    float below = clamp(-10.0 * lowest / max(highest, 1e-30), 0.0, 1.0);
-    float turned = AREALIGHT_FOOTPRINT == AREALIGHT_FOOTPRINT_MIPS ? 0.0
-        : max(below, clamp(1.0 - 1.75 * s, 0.0, 1.0));
-    float v = max(STEEP - s, 0.0);
-    float moved = turned * 0.83 * v * v / (v + 0.653);
-    float grown = 0.963 * moved;
-    vec2 cut = s > STEEP ? vec2(s, 1.0) : vec2(1.0, 1.0 / STEEP - 0.045 * v / (v + 1.438));
-    vec2 weights = mix(vec2(cosine, 1.0 / to_rise), cut * inversesqrt(dot(cut, cut)), turned);
+    float turned = below * clamp(1.0 - 0.625 * s, 0.0, 1.0);
     // What has a vector of the plane's coordinates by dot products
     vec3 to_u = cross(image.axis_v, normal) / (area * area);
     vec3 to_v = cross(normal, image.axis_u) / (area * area);
-    float scale = inversesqrt(area);
+    vec2 foot = -vec2(dot(image.corner, to_u), dot(image.corner, to_v));
+    float facing = max(abs(dot(vector, normal)) / area, 1e-30);
+    vec2 mean = foot + height / facing * vec2(dot(vector, to_u), dot(vector, to_v));
+    mean = arealight_clamp_coordinate(mean, image.low, image.low + image.size);
+    mean = mix(image.low + 0.5 * image.size, mean, below);
+    vec2 way = foot - mean;
+    vec3 aside = scale * (way.x * image.axis_u + way.y * image.axis_v);
+    float up = height * scale;
+    float square = clamp(up * up + dot(aside, aside), 1e-30, 1e30);
+    float seen = min(length(vector) * sqrt(3.141593 * square / facing), 1.0);
+    float above = max(image.corner.z + dot(rise, mean), 1e-30);
+    float share = min(max(s, 0.0) + 1.2 * inversesqrt(square), 1.0);
+    share = min(share, 0.9 * above / max(above - cosine * height, 1e-30));
+    share = is_mips ? 1.0 : mix(share, min(share, 1.15 * seen * seen * seen / square), turned);
     ArealightImagePlace found;
-    found.coordinate = height * moved * to_rise * vec2(to_u.z, to_v.z)
-                     - vec2(dot(image.corner, to_u), dot(image.corner, to_v));
-    found.height = height * scale * sqrt(1.0 + grown * grown);
+    found.coordinate = mean + share * way + 0.24 * turned * seen / scale * to_rise * vec2(to_u.z, to_v.z);
+    found.height = sqrt(share * min(up * up + (1.0 - share) * dot(aside, aside), 1e30));
+    vec2 weights = vec2(max((image.corner.z + dot(rise, found.coordinate)) * to_rise * scale, 1e-12),
+                        mix(1.0, seen, turned) * found.height);
+    weights *= inversesqrt(dot(weights, weights));
     found.weight = weights.x;
-    found.slope = weights.y * scale * to_rise * vec2(image.axis_u.z, image.axis_v.z);
-    found.least = mix(0.03, 0.3, below);
+    found.slope = weights.y * scale * to_rise * rise;
+    found.least = mix(0.03, 0.4, below);
     return found;
 }
 
@@ -131,11 +143,11 @@ float arealight_kernel_coordinate(float x) {
     return outside > 0.0 ? 0.5 + (x < 0.5 ? -side : side) : 0.25 + 0.5 * x;
 }
 
-// The mean colour that a lobe sees of a light's image: finite and not negative for any input, if the image
-// is.
-vec3 arealight_footprint(ArealightLobeImage image) {
+// The mean colour that a lobe sees of a light's image, whose clipped form factor is `vector`: finite and not
+// negative for any input, if the image is.
+vec3 arealight_footprint(ArealightLobeImage image, vec3 vector) {
     float side = float(arealight_bridge_light_texture_side());
-    ArealightImagePlace place = arealight_image_place(image);
+    ArealightImagePlace place = arealight_image_place(image, vector);
     vec2 inside = arealight_clamp_coordinate(place.coordinate, image.low, image.low + image.size);
     float area = image.size.x * image.size.y;
     if (area < 0.999) {
@@ -161,7 +173,7 @@ vec3 arealight_footprint(ArealightLobeImage image) {
     place.slope *= min(AREALIGHT_FINEST_HEIGHT * side / height, 1.0);
     // As much of the slope as leaves no colour below zero, and enough of what is covered
     vec4 slope = place.slope.x * b_u + place.slope.y * b_v;
-    vec4 most = (place.weight - vec4(vec3(0.0), place.least)) * a / max(-slope, 1e-30);
+    vec4 most = place.weight * vec4(vec3(1.0), 1.0 - place.least) * a / max(-slope, 1e-30);
     vec4 sum = place.weight * a + min(min(min(most.x, most.y), min(most.z, most.w)), 1.0) * slope;
     if (height < AREALIGHT_FINEST_HEIGHT) {
         // From the finest level on to the image itself
