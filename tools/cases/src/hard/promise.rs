@@ -45,7 +45,7 @@ impl Promises {
     pub fn small_light_bound(&self, reference: &Reference) -> Option<f64> {
         let unit = reference.small_light_unit?;
         let grown = self.small_light_growth * reference.extents_away;
-        (reference.is_above || grown == 0.0).then(|| (self.small_light + grown) * unit)
+        (reference.is_above || grown == 0.0).then_some((self.small_light + grown) * unit)
     }
 }
 
