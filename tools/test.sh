@@ -168,7 +168,8 @@ if [[ "${AREALIGHT_LONG:-}" == 1 ]]; then
     bevy=(--manifest-path examples/bevy/Cargo.toml --locked --quiet --target-dir "${CARGO_TARGET_DIR:-target}/bevy")
     step "format of the plugin for Bevy" cargo fmt --manifest-path examples/bevy/Cargo.toml --check
     step "area lights in Bevy are those of the oracle" env RUSTFLAGS="-D warnings" cargo test "${bevy[@]}"
-    step "documents as a site" bash -c 'cargo install -q --locked --root "$0" mdbook && "$0/bin/mdbook" build docs -d "$0/site"' "$PWD/target/book"
+    site='cargo install -q --locked --root "$0" mdbook && "$0/bin/mdbook" build docs -d "$0/site"'
+    step "documents as a site" bash -c "$site" "$PWD/target/book"
 fi
 step "Python module and its notebook" tools/test-python.sh
 step "archives of a release" tools/test-release.sh

@@ -101,8 +101,8 @@ export function packLights(target, lights) {
     return { records, vertices: new Float32Array(vertices), count: lights.length };
 }
 
-// A picture of `size` pixels that is shaded again and again: its G-buffer, up to `capacity` lights, and its radiance. `inputs` are all but
-// the radiance, of another frame that shows the same by another kernel.
+// A picture of `size` pixels that is shaded again and again: its G-buffer, up to `capacity` lights, and its
+// radiance. `inputs` are all but the radiance, of another frame that shows the same by another kernel.
 export class Frame {
     constructor({ device, target, pipeline, table }, size, capacity, inputs = null) {
         Object.assign(this, { device, target, pipeline, size });
