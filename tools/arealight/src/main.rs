@@ -3,6 +3,7 @@
 mod canvas;
 mod commands;
 mod differences;
+mod edges;
 mod failure;
 mod film;
 mod gpu;

@@ -7,11 +7,12 @@ use crate::film;
 use crate::output;
 use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage as _};
 use glam::{DVec3, Vec3};
+use std::collections::HashMap;
 use std::io::Cursor;
 use std::path::Path;
 
 /// Linear radiance, row after row from the top.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Picture {
     /// Width in pixels.
     pub width: u32,
@@ -19,6 +20,8 @@ pub struct Picture {
     pub height: u32,
     /// Linear Rec. 709 radiance, W/(m² sr).
     pub pixels: Vec<Vec3>,
+    /// Of pixels that have other samples than their own alone, those: [`crate::edges`].
+    pub edges: HashMap<u32, Vec<u32>>,
 }
 
 /// What a picture is saved as.
@@ -87,15 +90,18 @@ impl Picture {
     /// Means over `factor` × `factor` samples of `map` applied to each sample.
     fn resolve(&self, factor: u32, map: impl Fn(Vec3) -> Vec3) -> Self {
         let (width, height) = (self.width / factor, self.height / factor);
-        let mean = |x: u32, y: u32| {
-            let samples = (0..factor * factor).map(|i| {
-                let (column, row) = (x * factor + i % factor, y * factor + i / factor);
-                map(self.pixels[(row * self.width + column) as usize])
-            });
-            samples.sum::<Vec3>() / (factor * factor) as f32
+        let mean = |pixel: u32| {
+            let (x, y) = (pixel % width * factor, pixel / width * factor);
+            let own = (0..factor * factor).map(|i| (y + i / factor) * self.width + x + i % factor);
+            let shown = |sample: u32| map(self.pixels[sample as usize]);
+            match self.edges.get(&pixel) {
+                Some(samples) => {
+                    samples.iter().map(|sample| shown(*sample)).sum::<Vec3>() / samples.len() as f32
+                }
+                None => own.map(shown).sum::<Vec3>() / (factor * factor) as f32,
+            }
         };
-        let pixels = (0..width * height).map(|i| mean(i % width, i / width)).collect();
-        Self { width, height, pixels }
+        Self { width, height, pixels: (0..width * height).map(mean).collect(), edges: HashMap::new() }
     }
 
     /// Writes the picture, of `factor` × `factor` samples a pixel, in the format that the path's ending
@@ -235,7 +241,7 @@ mod tests {
     fn samples_are_averaged_and_exr_keeps_radiance() {
         // Beyond what a screen shows, and another in each channel
         let pixels = (0..8).map(|i| Vec3::new(i as f32, 1000.0 * i as f32, -0.25 * i as f32)).collect();
-        let picture = Picture { width: 4, height: 2, pixels };
+        let picture = Picture { width: 4, height: 2, pixels, ..Picture::default() };
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("picture.exr");
         picture.save(&path, 2, 3.0).unwrap();
@@ -282,7 +288,8 @@ mod tests {
         let greys: Vec<Vec3> = (0..=100).map(|i| Vec3::splat(i as f32 * 0.08)).collect();
         let lamp = [Vec3::splat(8000.0); 100];
         let stops = |pixels: Vec<Vec3>, emission: &[Vec3]| {
-            Picture { width: pixels.len() as u32, height: 1, pixels }.auto_stops(emission, MAX_STOPS)
+            let width = pixels.len() as u32;
+            Picture { width, height: 1, pixels, ..Picture::default() }.auto_stops(emission, MAX_STOPS)
         };
         let both = || [&greys[..], &lamp].concat();
         let emission = [&[Vec3::ZERO; 101][..], &lamp].concat();
@@ -298,7 +305,7 @@ mod tests {
         // Nothing lit, and nearly nothing
         assert_eq!(stops(vec![Vec3::ZERO, Vec3::NAN], &[Vec3::ZERO; 2]), 0.0);
         assert_eq!(stops(vec![Vec3::splat(1e-30)], &[Vec3::ZERO]), MAX_STOPS);
-        let rounding = Picture { width: 1, height: 1, pixels: vec![Vec3::splat(1e-7)] };
+        let rounding = Picture { width: 1, height: 1, pixels: vec![Vec3::splat(1e-7)], ..Picture::default() };
         assert_eq!(rounding.auto_stops(&[Vec3::ZERO], 7.0), 7.0);
     }
 
@@ -311,7 +318,7 @@ mod tests {
 
     #[test]
     fn another_ending_is_refused() {
-        let picture = Picture { width: 1, height: 1, pixels: vec![Vec3::ONE] };
+        let picture = Picture { width: 1, height: 1, pixels: vec![Vec3::ONE], ..Picture::default() };
         let error = picture.save(Path::new("out.bmp"), 1, 0.0).unwrap_err();
         assert!(error.to_string().contains("must end in .png or .exr"));
     }

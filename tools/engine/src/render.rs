@@ -291,6 +291,13 @@ impl<'a> SceneRenderer<'a> {
         Ok(texels.into_iter().map(Vec4::from_array).collect())
     }
 
+    /// The index of the triangle that each pixel shows, if any.
+    pub fn triangles(&mut self) -> Result<Vec<Option<u32>>, EngineError> {
+        self.ensure_visible()?;
+        let texels: Vec<[f32; 4]> = self.g_buffer[Plane::Position].download(Usage::COMPUTE_READ)?;
+        Ok(texels.into_iter().map(|[.., triangle]| (triangle as u32).checked_sub(1)).collect())
+    }
+
     /// Puts colours into the radiance image in the place of what was shaded, rows from the top.
     pub fn show(&mut self, colors: &[Vec3]) -> Result<(), EngineError> {
         self.ensure_visible()?;

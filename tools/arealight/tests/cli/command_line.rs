@@ -340,6 +340,27 @@ fn shadows_go_on_until_their_noise_is_low() {
 }
 
 #[test]
+fn bright_edges_are_drawn_by_more_lines_of_sight() {
+    let Some(()) = device() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["gallery.glb", "neon.glb"] {
+        let render = |samples: &str, exposure: &str, output: &str| {
+            let common = ["render", &scene(name), "--size", "64x36", "--shadows", "off", "-o", output];
+            let picture = ["--supersample", samples, "--exposure", exposure];
+            printed(&run(folder.path(), &[&common[..], &picture].concat()));
+        };
+        render("8", "0", "truth.exr");
+        // The twin: an exposure at which no edge is bright
+        let [bright, dark] = ["0", "-30"].map(|exposure| {
+            render("2", exposure, "few.exr");
+            let compared = run(folder.path(), &["compare", "few.exr", "truth.exr", "--json"]);
+            json_of(&compared)["rmse_over_mean"].as_f64().unwrap()
+        });
+        assert!(bright < 0.4 * dark, "{name}: {bright}, {dark}");
+    }
+}
+
+#[test]
 fn pictures_are_compared() {
     let folder = tempfile::tempdir().unwrap();
     let picture = |name: &str, size: usize, value: f32| {

@@ -4,6 +4,7 @@ use super::Arguments;
 use super::bands::{Band, MOST_SAMPLES};
 use super::frames::Frame;
 use super::rounds::{MOST_ROUNDS, Rounds};
+use crate::edges::{self, Sight};
 use crate::picture::{AUTO_LUMINANCE, Exposure, MAX_STOPS, Picture};
 use crate::progress;
 use crate::shadows::Shadows;
@@ -45,7 +46,7 @@ const MOST_BANDS: u32 = 1 << 16;
 impl Outcome {
     /// A picture of `size` without a row yet.
     fn begin([width, height]: [u32; 2]) -> Self {
-        let picture = Picture { width, height, pixels: vec![] };
+        let picture = Picture { width, height, ..Picture::default() };
         let none = Some(Duration::ZERO);
         Self {
             visibility: none,
@@ -128,7 +129,7 @@ pub fn render(
         None => progress::bar(bands.len() as u64, "bands"),
     };
     let mut sum = Outcome::begin(size);
-    let mut emission = vec![];
+    let (mut emission, mut materials) = (vec![], vec![]);
     let fog = arguments.fog.of(scene, camera);
     let most_stops = most_stops(scene);
     // A film's shadows go on from the frame before. A picture in bands would need a history a band
@@ -140,6 +141,11 @@ pub fn render(
         let camera = band.camera(whole, size[1]);
         let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, camera, in_band)?;
         let visibility = renderer.visibility()?;
+        if edges::FACTORS.contains(&supersample) {
+            let material = |triangle: u32| buffers.triangles[triangle as usize].material;
+            let seen = band.keep(size[0], renderer.triangles()?);
+            materials.extend(seen.into_iter().map(|triangle| triangle.map(material)));
+        }
         // So far there is what lamps show of themselves
         let lamps = colors(&mut renderer)?;
         // Frames of a film, bands and rounds each have seeds of their own, one after the other
@@ -167,7 +173,8 @@ pub fn render(
             Exposure::Stops(stops) => stops,
             Exposure::Auto => {
                 let [width, height] = in_band;
-                Picture { width, height, pixels: found.clone() }.auto_stops(&lamps, most_stops)
+                let pixels = found.clone();
+                Picture { width, height, pixels, ..Picture::default() }.auto_stops(&lamps, most_stops)
             }
         };
         if let Some(rounds) = Rounds::of(arguments, &view, in_band, stops) {
@@ -203,6 +210,10 @@ pub fn render(
         Exposure::Auto => sum.picture.auto_stops(&emission, most_stops),
         Exposure::Stops(stops) => stops,
     };
+    if edges::FACTORS.contains(&supersample) {
+        let sight = Sight { scene: &buffers, camera, materials, factor: supersample };
+        sum.picture.edges = sight.edges(&sum.picture, sum.stops);
+    }
     Ok(sum)
 }
 
