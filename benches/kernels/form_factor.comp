@@ -5,15 +5,14 @@
 
 layout(local_size_x = 64) in;
 
-#include "arealight/form_factor/difference.glsl"
 #include "arealight/form_factor/outline.glsl"
+#include "arealight/form_factor/quad.glsl"
 
 // See benches/src/method.rs.
 layout(constant_id = 0) const int METHOD = 0;
 
 const int METHOD_OUTLINE = 0;
 const int METHOD_QUAD = 8;
-const int METHOD_QUAD_DIFFERENCE = 9;
 const int METHOD_YARDSTICK = 32; // plus a school of yardsticks.glsl
 const int METHOD_CLIP_AND_ACOS = 35;
 
@@ -85,7 +84,7 @@ vec3 quad_vector(uint count) {
 }
 
 vec3 outline_vector(uint count) {
-    ArealightOutline outline = arealight_outline_begin();
+    ArealightOutline outline = arealight_outline_begin(polygon_anchor);
     vec3 from = arealight_unit(polygon_anchor + polygon_offset(count - 1u));
     for (uint index = 0u; index < count; index++) {
         vec3 to = arealight_unit(polygon_anchor + polygon_offset(index));
@@ -95,27 +94,9 @@ vec3 outline_vector(uint count) {
     return arealight_outline_vector(outline);
 }
 
-vec3 outline_difference_vector(uint count, float extent) {
-    ArealightAnchor anchor = arealight_anchor(polygon_anchor, extent, AREALIGHT_HORIZON_WIDTH, 0.0);
-    ArealightDifferenceOutline outline = arealight_difference_begin();
-    for (uint index = 0u; index < count; index++) {
-        arealight_difference_to(outline, anchor, arealight_vertex(anchor, polygon_offset(index)));
-    }
-    return arealight_difference_vector(outline, anchor);
-}
-
 // The library's form factor, of either side; 0 where a coordinate is not finite, as for the library's lights.
-float library_form_factor(uint count, float extent, float sizes) {
-    vec3 vector;
-    if (METHOD == METHOD_QUAD) {
-        vector = quad_vector(count);
-    } else if (METHOD == METHOD_QUAD_DIFFERENCE) {
-        vector = arealight_difference_quad(polygon_anchor, polygon_quad(count), AREALIGHT_HORIZON_WIDTH, 0.0);
-    } else if (METHOD == METHOD_OUTLINE) {
-        vector = outline_vector(count);
-    } else {
-        vector = outline_difference_vector(count, extent);
-    }
+float library_form_factor(uint count, float sizes) {
+    vec3 vector = METHOD == METHOD_QUAD ? quad_vector(count) : outline_vector(count);
     return arealight_guarded_form_factor(abs(vector.z), sizes);
 }
 
@@ -136,12 +117,9 @@ void main() {
     float extent = arealight_max_component(polygon.anchor) + largest;
     polygon_scale = int(floatBitsToUint(arealight_power_of_two_scale(extent)) >> 23) - 127;
     polygon_anchor = scaled(polygon.anchor);
-    float square = 0.0;
     float sizes = dot(abs(polygon_anchor), vec3(1.0));
     for (uint i = 0u; i < count; i++) {
-        vec3 offset = polygon_offset(i);
-        square = max(square, dot(offset, offset));
-        sizes += dot(abs(offset), vec3(1.0));
+        sizes += dot(abs(polygon_offset(i)), vec3(1.0));
     }
 
     float form_factor;
@@ -152,7 +130,7 @@ void main() {
     } else if (METHOD >= METHOD_YARDSTICK) {
         form_factor = yardstick_outline(METHOD - METHOD_YARDSTICK, count);
     } else {
-        form_factor = library_form_factor(count, sqrt(square), sizes);
+        form_factor = library_form_factor(count, sizes);
     }
     results[index] = form_factor;
 }

@@ -6,13 +6,13 @@
 #include "clipped_sphere.glsl"
 
 // The roots of x^3 + c.z x^2 + c.y x + c.x, the middle one in y.
-vec3 published_cubic(vec3 c, bool clamped) {
+vec3 published_cubic(vec3 c) {
     float b = c.z / 3.0;
     float third = c.y / 3.0;
     float d = c.x;
     vec3 delta = vec3(third - b * b, d - third * b, b * d - third * third);
-    float discriminant = 4.0 * delta.x * delta.z - delta.y * delta.y;
-    float root = sqrt(clamped ? max(discriminant, 0.0) : discriminant);
+    // Kept from being negative, as is often done
+    float root = sqrt(max(4.0 * delta.x * delta.z - delta.y * delta.y, 0.0));
     // The largest root, and the smallest as the reciprocal of the reversed equation's largest
     const float THIRD_OF_TURN = 2.0943951;
     float theta = atan(root, 2.0 * b * delta.x - delta.y) / 3.0;
@@ -34,9 +34,8 @@ vec3 published_cubic(vec3 c, bool clamped) {
     return roots.z < roots.x && roots.z < roots.y ? roots.xzy : roots;
 }
 
-// x: as it is; y: as (length^2 + z) / (length + 1), the cheap horizon. `clamped`: not 0 to keep the cubic's
-// discriminant from being negative, as is often done.
-vec2 published_disk(vec3 center, vec3 axis_u, vec3 axis_v, int clamped) {
+// x: as it is; y: as (length^2 + z) / (length + 1), the cheap horizon.
+vec2 published_disk(vec3 center, vec3 axis_u, vec3 axis_v) {
     float d11 = dot(axis_u, axis_u);
     float d22 = dot(axis_v, axis_v);
     float d12 = dot(axis_u, axis_v);
@@ -69,7 +68,7 @@ vec2 published_disk(vec3 center, vec3 axis_u, vec3 axis_v, int clamped) {
     a *= height * height;
     b *= height * height;
     vec3 e = published_cubic(vec3(a * b, a * b * (1.0 + x * x + y * y) - a - b,
-                                  1.0 - a * (1.0 + x * x) - b * (1.0 + y * y)), clamped != 0);
+                                  1.0 - a * (1.0 + x * x) - b * (1.0 + y * y)));
     vec3 mean = normalize(mat3(v1, v2, v3) * vec3(a * x / (a - e.y), b * y / (b - e.y), 1.0));
     float l1 = sqrt(-e.y / e.z);
     float l2 = sqrt(-e.y / e.x);

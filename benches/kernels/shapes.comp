@@ -7,9 +7,8 @@
 layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const int FUNCTION = 0;
-layout(constant_id = 1) const int LEVEL = 0; // 1: the difference form
 // 1 where tubes are cut by the surface whose normal is z too; or a lobe's horizon
-layout(constant_id = 2) const int CHOICE = 0;
+layout(constant_id = 1) const int CHOICE = 0;
 
 const int FUNCTION_ELLIPSE = 0;
 const int FUNCTION_SPHERE = 1;
@@ -20,7 +19,6 @@ const int FUNCTION_TUBE = 5;
 const int FUNCTION_LOBE = 6;
 
 #define AREALIGHT_TWO_SIDED 1
-#define AREALIGHT_DIFFERENCE LEVEL
 #define AREALIGHT_SURFACE_HORIZON CHOICE
 #include "arealight/lights/disk.glsl"
 #include "arealight/lights/sphere.glsl"
@@ -99,14 +97,15 @@ vec4 evaluate(ShapeArguments given, int tube_ends) {
         // The matrix's rows, of which the last one is of unit length
         vec3 row = vec3(given.c.w, given.d.w, given.b.w);
         mat3 transform = transpose(mat3(given.c.xyz, given.d.xyz, row));
-        result.x = CHOICE == 0
+        result.x = !tube.seen ? 0.0
+                 : CHOICE == 0
                  ? arealight_tube_form_factor(tube, transform, AREALIGHT_HORIZON_WIDTH)
                  : arealight_tube_both_horizons(tube, vec3(0.0, 0.0, 1.0), transform,
                                                 AREALIGHT_HORIZON_WIDTH);
     } else if (FUNCTION == FUNCTION_LOBE) {
         result.xy = vec2(lobe_of(given, false), lobe_of(given, true));
     } else if (FUNCTION == FUNCTION_PUBLISHED) {
-        result.xy = published_disk(given.a.xyz, given.b.xyz, given.c.xyz, LEVEL);
+        result.xy = published_disk(given.a.xyz, given.b.xyz, given.c.xyz);
     }
     return result;
 }

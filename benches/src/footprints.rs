@@ -5,7 +5,7 @@ mod cost;
 mod report;
 
 use crate::textures::{self, TextureCost};
-use arealight::{Effects, Footprint, FormFactor, Light, LightTable, Quality, TexturePart};
+use arealight::{Effects, Footprint, Light, LightTable, Quality, TexturePart};
 use arealight_engine::host::Host;
 use arealight_engine::{Engine, EngineError, EvalPoint};
 use arealight_oracle::material::Surface;
@@ -293,8 +293,7 @@ fn far(engine: &Engine, truth: &dyn Fn(Quality, &EvalPoint) -> DVec3) -> Result<
         Surface { diffuse_albedo: DVec3::ONE, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0, ..Surface::default() };
     let glossy =
         Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::ONE, f90: 1.0, alpha: 0.25, ..Surface::default() };
-    // An absolute error of 1e-6 would be as much as these lights are
-    let quality = Quality { form_factor: FormFactor::Difference, ..Quality::default() };
+    let quality = Quality::default();
 
     let mut rows = Vec::new();
     for (picture, layer) in [("noise", NOISE), (SPOT_PICTURE, SPOT), ("framed", FRAMED)] {

@@ -2,9 +2,7 @@
 //! quality level.
 
 use crate::table::Table;
-use arealight::{
-    FormFactor, Horizon, Light, LightShape, LightTable, Lobes, MIN_ALPHA, Quality, SpecularLobes,
-};
+use arealight::{Horizon, Light, LightShape, LightTable, Lobes, MIN_ALPHA, Quality, SpecularLobes};
 use arealight_engine::host::Host;
 use arealight_engine::{Engine, EngineError, EvalPoint};
 use arealight_fit::{Brdf, GgxBrdf};
@@ -33,8 +31,7 @@ impl Default for Options {
 pub const LAST_VIEW: f64 = 89.9;
 
 /// Half the side of the light, which is 1 above the surface: it fills the hemisphere but for 1e-5 of the
-/// cosine. In a mirror's cosine space its corners are 1e9 times as far as it is: such a light asks for
-/// [`FormFactor::Difference`].
+/// cosine. In a mirror's cosine space its corners are 1e9 times as far as it is.
 const HALF_SIDE: f64 = 1e5;
 
 /// A level, as rows have it.
@@ -51,7 +48,7 @@ pub struct Level {
 pub fn levels() -> [Level; 7] {
     let level = |name, horizon, lobes| Level {
         name,
-        quality: Quality { horizon, lobes, form_factor: FormFactor::Difference, ..Quality::default() },
+        quality: Quality { horizon, lobes, ..Quality::default() },
         format: TableFormat::default(),
         multiple_scattering: false,
     };

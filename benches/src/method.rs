@@ -1,10 +1,8 @@
-//! The ways to compute a form factor that are compared: the library's levels by each of its ways in, and the
-//! yardsticks, which are what others do.
+//! The ways to compute a form factor that are compared: the library's, and the yardsticks, which are what
+//! others do.
 
 use crate::school::School;
-use arealight::FormFactor;
 use arealight_cases::hard::HardCase;
-use arealight_cases::hard::promise::Promises;
 
 /// A way to compute a form factor.
 #[derive(Debug, Clone, Copy)]
@@ -13,8 +11,6 @@ pub struct Method {
     pub name: &'static str,
     /// What it is.
     pub description: &'static str,
-    /// What it is held to: its own promises, or for a yardstick those of the default level.
-    pub promises: Promises,
     /// It is no way of ours: that it breaks promises is expected.
     pub is_yardstick: bool,
     /// It takes convex polygons of up to four vertices only.
@@ -34,29 +30,19 @@ enum Shape {
 /// The first of the kernel's yardsticks, `METHOD_YARDSTICK`.
 const YARDSTICK: u32 = 32;
 
-/// What each level promises.
-pub const fn promises(level: FormFactor) -> Promises {
-    match level {
-        FormFactor::Exact => Promises::EXACT,
-        FormFactor::Difference => Promises::DIFFERENCE,
-    }
-}
-
 impl Method {
-    const fn level(name: &'static str, description: &'static str, shape: Shape, level: FormFactor) -> Self {
+    const fn exact(name: &'static str, description: &'static str, shape: Shape) -> Self {
         Self {
             name,
             description,
-            promises: promises(level),
             is_yardstick: false,
             quads_only: matches!(shape, Shape::Quad),
-            id: shape as u32 | level as u32,
+            id: shape as u32,
         }
     }
 
     const fn yardstick(name: &'static str, description: &'static str, id: u32) -> Self {
-        let promises = Promises::EXACT;
-        Self { name, description, promises, is_yardstick: true, quads_only: false, id }
+        Self { name, description, is_yardstick: true, quads_only: false, id }
     }
 
     const fn school(name: &'static str, school: School) -> Self {
@@ -80,15 +66,8 @@ impl Method {
 
 /// Every method, the yardsticks last.
 pub static METHODS: &[Method] = &[
-    Method::level("polygon-exact", "any outline, exact", Shape::Polygon, FormFactor::Exact),
-    Method::level(
-        "polygon-difference",
-        "any outline, difference form",
-        Shape::Polygon,
-        FormFactor::Difference,
-    ),
-    Method::level("quad-exact", "convex, exact", Shape::Quad, FormFactor::Exact),
-    Method::level("quad-difference", "convex, difference form", Shape::Quad, FormFactor::Difference),
+    Method::exact("polygon-exact", "any outline, exact", Shape::Polygon),
+    Method::exact("quad-exact", "convex, exact", Shape::Quad),
     Method::school("sphere-horizon", School::SphereHorizon),
     Method::school("clipless", School::Clipless),
     Method::school("clip-by-cases", School::ClipByCases),

@@ -83,10 +83,10 @@ pub fn run(
 /// A family's row.
 fn judged(passes: &Passes, family: &Family, cases: &[Case]) -> Result<ShapeRow, EngineError> {
     let (arguments, ends): (Vec<_>, Vec<_>) = cases.iter().map(Case::arguments).unzip();
-    let found = evaluate(passes, family.function, family.level, &arguments, &ends)?;
+    let found = evaluate(passes, family.function, &arguments, &ends)?;
     let published = match family.function {
         ShapeFunction::Ellipse => {
-            let found = evaluate(passes, ShapeFunction::Published, 1, &arguments, &ends)?;
+            let found = evaluate(passes, ShapeFunction::Published, &arguments, &ends)?;
             let pairs = cases.iter().zip(found);
             let errors: Vec<f64> =
                 pairs.map(|(case, found)| (f64::from(found) - case.value()).abs()).collect();
@@ -133,7 +133,7 @@ fn of_any_bits(
         .map(|_| [[0; 4]; 4].map(|row| row.map(|_: u32| f32::from_bits(stream.bits()))))
         .collect();
     let ends: Vec<u32> = (0..samples).map(|index| (index % 3) as u32).collect();
-    let found = evaluate(passes, function, 0, &arguments, &ends)?;
+    let found = evaluate(passes, function, &arguments, &ends)?;
     Ok(ShapeRow {
         family: format!("{name}, any bits"),
         samples: found.len(),
@@ -157,13 +157,12 @@ pub fn family_count() -> u64 {
 fn evaluate(
     passes: &Passes,
     function: ShapeFunction,
-    level: u32,
     arguments: &[ShapeArguments],
     ends: &[u32],
 ) -> Result<Vec<f32>, EngineError> {
     let host = passes.host();
     let inputs = [host.storage_buffer("arguments", arguments)?, host.storage_buffer("ends", ends)?];
-    let kernel = (&SHAPES, &[(0, function as u32), (1, level), (2, 0)][..]);
+    let kernel = (&SHAPES, &[(0, function as u32), (1, 0)][..]);
     let resources = [&inputs[0], &inputs[1]].map(|buffer| Resource::buffer(buffer.handle()));
     let count = arguments.len();
     // SAFETY: The inputs live until this returns.

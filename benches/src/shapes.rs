@@ -22,7 +22,7 @@ pub enum ShapeFunction {
     /// `arealight_arctangent` of a.y and a.x.
     Arctangent = 3,
     /// The published disk, of a center a and axes b and c: with its sphere for the horizon, and the cheap
-    /// one. The level is whether its discriminant is clamped.
+    /// one.
     Published = 4,
     /// `arealight_tube_form_factor` of a center a, half an axis b and a radius a.w, under the matrix of rows
     /// c, d, and the fourth components of c, d and b.

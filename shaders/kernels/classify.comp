@@ -25,7 +25,6 @@ layout(constant_id = 21) const int SAMPLES = 1;
 #define G_BUFFER_LAYOUT LAYOUT
 #define G_BUFFER_SAMPLES SAMPLES
 #define TILE_LISTS_ACCESS
-#define AREALIGHT_DIFFERENCE 0
 #define AREALIGHT_FOOTPRINT 0
 #include "effects.glsl"
 #include "arealight/options.glsl"

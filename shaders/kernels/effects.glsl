@@ -2,7 +2,7 @@
 #define EFFECTS_GLSL
 
 // The options of the library by the bits of arealight::Effects in Rust (a test compares them). The including
-// kernel has the specialisation constants EFFECTS, FORM_FACTOR, HORIZON, SPECULAR_LOBES, LOBES and FOOTPRINT,
+// kernel has the specialisation constants EFFECTS, HORIZON, SPECULAR_LOBES, LOBES and FOOTPRINT,
 // or defines the option of one that it lacks; what EFFECTS lacks is not in the pipeline.
 
 const uint EFFECT_DIFFUSE = 1u;
@@ -76,7 +76,6 @@ const bool HAS_LINKS = (EFFECTS & EFFECT_LINKED) != 0u;
 const bool IS_TRANSMITTED = (EFFECTS & EFFECT_TRANSMISSION) != 0u;
 
 // Values of the constants of the quality, which are 0 else.
-const int FORM_FACTOR_DIFFERENCE = 1;
 const int HORIZON_BOTH = 1;
 const int SPECULAR_LOBES_TWO = 1;
 const int SPECULAR_LOBES_HALF_VECTORS = 2;
@@ -102,9 +101,6 @@ const int LOBES_FORMULA = 1;
 #define AREALIGHT_PROFILES ((EFFECTS & EFFECT_PROFILE) != 0u)
 #define AREALIGHT_AZIMUTHS ((EFFECTS & EFFECT_AZIMUTH) != 0u)
 #define AREALIGHT_OPENINGS ((EFFECTS & EFFECT_OPENING) != 0u)
-#ifndef AREALIGHT_DIFFERENCE
-#define AREALIGHT_DIFFERENCE (FORM_FACTOR == FORM_FACTOR_DIFFERENCE)
-#endif
 #define AREALIGHT_SURFACE_HORIZON (HORIZON == HORIZON_BOTH)
 #define AREALIGHT_TWO_SPECULAR_LOBES (SPECULAR_LOBES == SPECULAR_LOBES_TWO)
 #define AREALIGHT_HALF_VECTORS (SPECULAR_LOBES == SPECULAR_LOBES_HALF_VECTORS)

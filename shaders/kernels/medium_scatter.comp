@@ -11,7 +11,6 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
-layout(constant_id = 1) const int FORM_FACTOR = 0;
 layout(constant_id = 7) const int FOOTPRINT = 0;
 layout(constant_id = 11) const bool HAS_QUADS = true;
 layout(constant_id = 22) const int MEDIUM_RAYS = 0;

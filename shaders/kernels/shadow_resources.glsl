@@ -25,7 +25,6 @@ layout(push_constant, std430) uniform ShadowConstants {
     uvec2 size;
 } constants;
 
-#define AREALIGHT_DIFFERENCE 0
 #define AREALIGHT_FOOTPRINT 0
 #include "effects.glsl"
 const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;

@@ -1,7 +1,6 @@
 //! The quality levels, by both kernels of a polygon.
 
-use arealight::{Effects, FormFactor, Horizon, Quality};
-use arealight_cases::hard::promise::Promises;
+use arealight::{Effects, Horizon, Quality};
 
 /// Which code integrates the polygon.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,13 +24,9 @@ pub struct Level {
 
 impl std::fmt::Display for Level {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Quality { form_factor, horizon, .. } = self.quality;
-        write!(f, "{:?} {form_factor:?} {horizon:?}", self.path)
+        write!(f, "{:?} {:?}", self.path, self.quality.horizon)
     }
 }
-
-/// Every way to integrate edges.
-pub const FORM_FACTORS: [FormFactor; 2] = [FormFactor::Exact, FormFactor::Difference];
 
 impl Level {
     /// The quality levels of these paths and horizons.
@@ -39,10 +34,7 @@ impl Level {
         let mut levels = Vec::new();
         for &path in paths {
             for &horizon in horizons {
-                levels.extend(FORM_FACTORS.map(|form_factor| Self {
-                    path,
-                    quality: Quality { form_factor, horizon, ..Quality::default() },
-                }));
+                levels.push(Self { path, quality: Quality { horizon, ..Quality::default() } });
             }
         }
         levels
@@ -55,14 +47,6 @@ impl Level {
             Path::Quad => effects,
             Path::Polygon => effects | Effects::POLYGON,
             Path::Mesh => effects | Effects::POLYGON | Effects::MESH,
-        }
-    }
-
-    /// What `form_factor/quad.glsl` promises of it.
-    pub fn promises(self) -> Promises {
-        match self.quality.form_factor {
-            FormFactor::Exact => Promises::EXACT,
-            FormFactor::Difference => Promises::DIFFERENCE,
         }
     }
 }

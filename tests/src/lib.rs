@@ -26,7 +26,7 @@ pub mod spirv;
 
 pub use cases::Cases;
 pub use compare::{Comparison, rounding};
-pub use levels::{FORM_FACTORS, Level, Path};
+pub use levels::{Level, Path};
 pub use points::{Numbers, Random, glossy_surface, lambert_surface, point};
 pub use property::Property;
 

@@ -14,11 +14,12 @@
 //! float64, and the larger change counts. So the bound is as sharp for a mirror as for a Lambert lobe, and
 //! wide only where the light's edge really hangs on the last bits.
 
-use crate::{Cases, Level};
+use crate::Cases;
 use arealight::gpu::GpuLight;
 use arealight::table::{mirror_frame, share_above_surface};
 use arealight::{Horizon, LightTable};
 use arealight_cases::hard::edges::sum_edges;
+use arealight_cases::hard::promise::Promises;
 use arealight_oracle::frame::SurfaceFrame;
 use arealight_tool_kernels::gpu::GpuCase;
 use glam::{DMat3, DVec3, DVec4};
@@ -253,9 +254,9 @@ impl Judge {
         self.albedo * self.gain * self.share
     }
 
-    /// How far a level's answer may be from it.
-    pub fn bound(&self, level: Level) -> f64 {
-        let edges = level.promises().backward;
+    /// How far an answer may be from it.
+    pub fn bound(&self) -> f64 {
+        let edges = Promises::OURS.backward;
         // The albedo is looked up to 4e-7; it and the gain, which is of a unit vector's component, are
         // multiplied
         let factors = self.albedo_reach + 4e-7 + 8.0 * UNIT;

@@ -11,8 +11,8 @@ pub use crate::{
 };
 pub use arealight::plan::{GBufferLayout, Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
 pub use arealight::{
-    Effects, Footprint, FormFactor, Horizon, Light, LightShape, LightSummary, LightTable, LightTexture,
-    Lobes, PackedLights, Plane, Planes, PyramidSize, Quality, SpecularLobes, TexturePart, TubeEnds,
+    Effects, Footprint, Horizon, Light, LightShape, LightSummary, LightTable, LightTexture, Lobes,
+    PackedLights, Plane, Planes, PyramidSize, Quality, SpecularLobes, TexturePart, TubeEnds,
 };
 pub use arealight_engine::host::{Image, ImageDescription, Usage};
 pub use arealight_engine::{EvalPoint, Reference, SceneRenderer, SourceImage, SourceTexels};

@@ -36,10 +36,8 @@ impl<'a> Property<'a> {
     /// Each group's form factors by a level, with the sum of their bounds.
     pub fn groups(&self, engine: &TestEngine, level: Level) -> Vec<(Vec<f64>, f64)> {
         let factors = engine.factors(&self.given, self.lobes, level);
-        let bounds = self
-            .judges(level)
-            .chunks_exact(self.size)
-            .map(|group| group.iter().map(|j| j.bound(level)).sum());
+        let groups = self.judges(level).chunks_exact(self.size);
+        let bounds = groups.map(|group| group.iter().map(Judge::bound).sum());
         factors.chunks_exact(self.size).map(<[f64]>::to_vec).zip(bounds).collect()
     }
 

@@ -96,7 +96,7 @@ def pareto(found, only_ours):
     named = None
     if not only_ours:
         samples = [(str(one["count"]), one["milliseconds"], one["errors"]["rmse"], NOISE) for one in found["monte_carlo"]]
-        named = {row["name"] for row in rows if not row["levels"]} | {"exact", "everything"} | {dot[0] for dot in samples}
+        named = {row["name"] for row in rows if not row["levels"]} | {"exact", "finest"} | {dot[0] for dot in samples}
         dots += samples
     made, axes = figure(860, 480)
     axes.set_xlabel("ms per light per megapixel")

@@ -171,7 +171,7 @@ def side(row):
 
 def error_cost(found, compiled, family="navi21"):
     """Error over compiled cost to the left, over time on the bench's device to the right."""
-    aliases = {"two lobes": "two specular lobes", "everything": "difference, both horizons, two specular lobes"}
+    aliases = {"two lobes": "two specular lobes"}
     costs = {(row["kernel"], row["level"]): row.get("ratio")
              for kind in compiled["families"] if kind["family"] == family
              for row in kind["rows"] if row["lights"] == "quads"}

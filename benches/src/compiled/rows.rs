@@ -8,9 +8,7 @@ use arealight::kernels::{self, BindingKind, Kernel};
 use arealight::plan::{
     self, MediumOptions, Output, RadianceFormat, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions,
 };
-use arealight::{
-    Effects, Footprint, FormFactor, Horizon, LightSummary, Lobes, Quality, SpecularLobes, TileClass,
-};
+use arealight::{Effects, Footprint, Horizon, Level, LightSummary, Lobes, Quality, SpecularLobes, TileClass};
 use arealight_engine::host::null_hardware::ComputeShader;
 use arealight_vk::prune;
 use ash::vk;
@@ -118,20 +116,17 @@ pub fn rows() -> Vec<Row> {
 /// Quads, by quality level and by effect.
 fn quad_rows() -> Vec<Row> {
     let exact = Quality::default();
-    let difference = Quality { form_factor: FormFactor::Difference, ..exact };
     let both = Quality { horizon: Horizon::Both, ..exact };
     let two_lobes = Quality { specular_lobes: SpecularLobes::Two, ..exact };
     let half_vectors = Quality { specular_lobes: SpecularLobes::HalfVectors, ..exact };
     let formula = Quality { lobes: Lobes::Formula, ..exact };
-    let everything = Quality { horizon: Horizon::Both, specular_lobes: SpecularLobes::Two, ..difference };
     vec![
         quads("exact", LOBES, exact),
         quads("both horizons", LOBES, both),
         quads("two specular lobes", LOBES, two_lobes),
         quads("half vectors", LOBES, half_vectors),
-        quads("difference", LOBES, difference),
         quads("formula", LOBES, formula),
-        quads("difference, both horizons, two specular lobes", LOBES, everything),
+        quads("finest", LOBES, Level::Finest.quality()),
         // Quads, by lobe
         quads("exact, diffuse alone", Effects::DIFFUSE, exact),
         quads("exact, specular alone", Effects::GLOSSY, exact),
@@ -165,7 +160,6 @@ fn quad_rows() -> Vec<Row> {
 /// Other kinds of light, what frames are, tiles and shadows.
 fn other_rows() -> Vec<Row> {
     let (exact, none) = (Quality::default(), Effects::empty());
-    let difference = Quality { form_factor: FormFactor::Difference, ..exact };
     let both = Quality { horizon: Horizon::Both, ..exact };
     let half_vectors = Quality { specular_lobes: SpecularLobes::HalfVectors, ..exact };
     let mips = Quality { footprint: Footprint::Mips, ..exact };
@@ -179,7 +173,6 @@ fn other_rows() -> Vec<Row> {
         // Other kinds of light in place of quads
         others("polygons", "exact", polygon, exact),
         others("polygons", "both horizons", polygon, both),
-        others("polygons", "difference", polygon, difference),
         others("polygons", "half vectors", polygon, half_vectors),
         others("textured quads", "exact", Effects::TEXTURED, exact),
         others("textured quads", "exact, plain mips", Effects::TEXTURED, mips),

@@ -3,7 +3,7 @@
 use super::points::LightKind;
 use crate::school::{School, YardstickTable};
 use arealight::kernels::{Kernel, SHADE_PASS};
-use arealight::{Effects, Footprint, FormFactor, Horizon, Level, Lobes, Quality, SpecularLobes};
+use arealight::{Effects, Footprint, Horizon, Level, Lobes, Quality, SpecularLobes};
 
 /// The shade kernel with the form factors that others ship.
 pub static SHADE_YARDSTICK: Kernel =
@@ -84,13 +84,11 @@ pub const TEXTURED: &str = "textured";
 pub const SAMPLES: [u32; 6] = [1, 4, 16, 64, 256, 1024];
 
 const EXACT: Quality = Quality {
-    form_factor: FormFactor::Exact,
     horizon: Horizon::Cosine,
     specular_lobes: SpecularLobes::One,
     lobes: Lobes::Table,
     footprint: Footprint::Kernel,
 };
-const DIFFERENCE: Quality = Quality { form_factor: FormFactor::Difference, ..EXACT };
 
 /// Every workload; the first has the whole ladder.
 pub fn workloads() -> Vec<Workload> {
@@ -130,19 +128,9 @@ pub fn workloads() -> Vec<Workload> {
         named(Level::TwoLobes, "two specular lobes"),
         named(Level::HalfVectors, "GGX over half vectors"),
         plain("both horizons", "nothing leaks from below", Quality { horizon: Horizon::Both, ..EXACT }),
-        plain("difference", "precise for small lights", DIFFERENCE),
         named(Level::Finest, "two specular lobes, at both horizons"),
-        plain(
-            "everything",
-            "two specular lobes, both horizons, difference",
-            Quality { specular_lobes: SpecularLobes::Two, horizon: Horizon::Both, ..DIFFERENCE },
-        ),
     ];
-    let far = vec![
-        with_our_table(BASELINE),
-        plain(DEFAULT, "absolute precision", EXACT),
-        plain("difference", "relative precision", DIFFERENCE),
-    ];
+    let far = vec![with_our_table(BASELINE), plain(DEFAULT, "absolute precision", EXACT)];
     let textured = |name, description, footprint| {
         level(name, description, Effects::TEXTURED, Quality { footprint, ..EXACT })
     };

@@ -1,13 +1,11 @@
 //! The levels of a quality as words, for files.
 
-use arealight::{Footprint, FormFactor, Horizon, Lobes, Quality, SpecularLobes};
+use arealight::{Footprint, Horizon, Lobes, Quality, SpecularLobes};
 use serde::{Deserialize, Serialize};
 
 /// A [`Quality`] in words, those of the options of `arealight render`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LevelNames {
-    /// `--form-factor`
-    pub form_factor: String,
     /// `--horizon`
     pub horizon: String,
     /// `--specular-lobes`
@@ -18,8 +16,6 @@ pub struct LevelNames {
     pub footprint: String,
 }
 
-const FORM_FACTORS: [(&str, FormFactor); 2] =
-    [("exact", FormFactor::Exact), ("difference", FormFactor::Difference)];
 const HORIZONS: [(&str, Horizon); 2] = [("cosine", Horizon::Cosine), ("both", Horizon::Both)];
 const SPECULAR_LOBES: [(&str, SpecularLobes); 3] =
     [("one", SpecularLobes::One), ("two", SpecularLobes::Two), ("half_vectors", SpecularLobes::HalfVectors)];
@@ -33,7 +29,6 @@ impl From<Quality> for LevelNames {
             known.map_or_else(String::new, |(name, _)| (*name).to_owned())
         }
         Self {
-            form_factor: name(&FORM_FACTORS, quality.form_factor),
             horizon: name(&HORIZONS, quality.horizon),
             specular_lobes: name(&SPECULAR_LOBES, quality.specular_lobes),
             lobes: name(&LOBES, quality.lobes),

@@ -6,7 +6,7 @@ use super::methods::{CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT, Method, SPHER
 use super::reference::{PictureError, Reference};
 use crate::school::{School, YardstickTable};
 use crate::textures::is_software;
-use arealight::{Effects, FormFactor, Horizon, LightTable, Quality, SpecularLobes};
+use arealight::{Effects, Horizon, Level, LightTable, Quality, SpecularLobes};
 use arealight_engine::host::Host;
 use arealight_engine::{Engine, EngineError, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers};
@@ -114,7 +114,6 @@ fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
     let level = |quality| Method::Level { effects, quality };
     let yardstick = |school| Method::Yardstick { effects, school, table: YardstickTable::PublishedQuality };
     let exact = Quality::default();
-    let both = Quality { specular_lobes: SpecularLobes::Two, horizon: Horizon::Both, ..exact };
     let mut methods = vec![
         (CLIPLESS_PUBLISHED, yardstick(School::Clipless)),
         (SPHERE_PUBLISHED, yardstick(School::SphereHorizon)),
@@ -122,7 +121,7 @@ fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
         ("exact", level(exact)),
         ("two lobes", level(Quality { specular_lobes: SpecularLobes::Two, ..exact })),
         ("both horizons", level(Quality { horizon: Horizon::Both, ..exact })),
-        ("everything", level(Quality { form_factor: FormFactor::Difference, ..both })),
+        ("finest", level(Level::Finest.quality())),
         ("Monte Carlo, 1 sample", Method::Samples { count: 1 }),
         ("Monte Carlo, 16 samples", Method::Samples { count: 16 }),
     ];

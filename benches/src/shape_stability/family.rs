@@ -16,12 +16,13 @@ use glam::{DMat3, DVec3};
 const BACKWARD: f64 = 1e-6;
 /// The same of disks: what `arealight_ellipse_form_factor` promises.
 const BACKWARD_OF_DISKS: f64 = 6e-7;
-/// Far shapes: the largest error as a part of what one sends at the zenith; of tubes by the difference form.
+/// Far spheres: the largest error as a part of what one sends at the zenith.
 const RELATIVE: f64 = 1e-5;
+/// The same of tubes: an outline's 1e-7 over the square of a 64th of the distance, which a radius here is at
+/// most; a line's, thinner than a hundredth, is less.
+const RELATIVE_OF_TUBES: f64 = 5e-4;
 /// The same of disks, whose height above their plane is rounded in the distance.
 const RELATIVE_OF_DISKS: f64 = 5e-6;
-/// The difference form's level.
-const DIFFERENCE: u32 = 1;
 
 /// A shape of a family.
 #[derive(Debug, Clone, Copy)]
@@ -122,9 +123,8 @@ enum Judgement {
 pub(super) struct Family {
     /// The shape, and what makes it hard.
     pub(super) name: String,
-    /// What evaluates them, and at which level.
+    /// What evaluates them.
     pub(super) function: ShapeFunction,
-    pub(super) level: u32,
     judgement: Judgement,
     make: Box<dyn Fn(u64, u64) -> Case + Sync>,
 }
@@ -159,8 +159,6 @@ pub(super) fn families() -> Vec<Family> {
         .map(|family| Family {
             name: format!("disk, {}", family.name),
             function: ShapeFunction::Ellipse,
-            // One far disk in a thousand that lie any way is cut by the horizon
-            level: if family.name.starts_with("far") { DIFFERENCE } else { 0 },
             judgement: if family.name.starts_with("far") {
                 Judgement::Relative(RELATIVE_OF_DISKS)
             } else {
@@ -177,7 +175,6 @@ pub(super) fn families() -> Vec<Family> {
         families.push(Family {
             name: name.into(),
             function: ShapeFunction::Sphere,
-            level: 0,
             judgement,
             make: Box::new(move |index, seed| Case::Sphere(hard_sphere(name, index, seed, [low, high]))),
         });
@@ -194,14 +191,12 @@ pub(super) fn families() -> Vec<Family> {
             Place::FarSlim,
         ] {
             let judgement = match place {
-                Place::Far | Place::FarCrossing | Place::FarSlim => Judgement::Relative(RELATIVE),
+                Place::Far | Place::FarCrossing | Place::FarSlim => Judgement::Relative(RELATIVE_OF_TUBES),
                 _ => Judgement::Backward(BACKWARD),
             };
-            let is_far = !matches!(judgement, Judgement::Backward(_));
             families.push(Family {
                 name: format!("{name}, {}", place.name()),
                 function: ShapeFunction::Tube,
-                level: if is_far { DIFFERENCE } else { 0 },
                 judgement,
                 make: Box::new(move |index, seed| Case::Tube(hard_tube(place, ends, index, seed))),
             });

@@ -116,12 +116,6 @@
 // Some profile is not round about the normal.
 #define AREALIGHT_EFFECT_AZIMUTH 268435456
 
-// Form factors to float32's own precision, 1e-6.
-#define AREALIGHT_FORM_FACTOR_EXACT 0
-
-// As EXACT, and relative precision for lights that look small.
-#define AREALIGHT_FORM_FACTOR_DIFFERENCE 1
-
 // Polygons are clipped at the horizon of the lobe's cosine space.
 #define AREALIGHT_HORIZON_COSINE 0
 
@@ -397,8 +391,6 @@ typedef struct ArealightPassOptions {
     // _MULTIPLE_SCATTERING, _TRANSMISSION and _THIN_FILM. 0 is DIFFUSE and GLOSSY. What lights need is known
     // from ArealightFrame.lights.
     uint32_t surfaces;
-    // One of AREALIGHT_FORM_FACTOR_*.
-    uint32_t form_factor;
     // One of AREALIGHT_HORIZON_*.
     uint32_t horizon;
     // One of AREALIGHT_SPECULAR_LOBES_*.
@@ -1485,27 +1477,26 @@ AREALIGHT_ASSERT(offsetof(ArealightModule, size) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightModule, host_set_layout) == 16);
 AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 112);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, surfaces) == 0);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, form_factor) == 4);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, horizon) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, specular_lobes) == 12);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, lobes) == 16);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, footprint) == 20);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, position) == 24);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, output) == 28);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_images) == 32);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_format) == 36);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, g_buffer) == 40);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_capacity) == 44);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_cull_threshold) == 48);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_least_quads) == 52);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, shadow_rays) == 56);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, camera) == 60);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, rectangle) == 64);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, texels_per_pixel) == 68);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, samples) == 72);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, stencil) == 76);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, light_counts) == 80);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, descriptors) == 84);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, horizon) == 4);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, specular_lobes) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, lobes) == 12);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, footprint) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, position) == 20);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, output) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_images) == 28);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_format) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, g_buffer) == 36);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_capacity) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_cull_threshold) == 44);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_least_quads) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, shadow_rays) == 52);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, camera) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, rectangle) == 60);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, texels_per_pixel) == 64);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, samples) == 68);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, stencil) == 72);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, light_counts) == 76);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, descriptors) == 80);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, module) == 88);
 AREALIGHT_ASSERT(sizeof(ArealightSetLayout) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, layout) == 0);

@@ -59,11 +59,6 @@ pub const AREALIGHT_EFFECT_OPENING: u32 = 67108864;
 pub const AREALIGHT_EFFECT_LINKED: u32 = 134217728;
 /// Some profile is not round about the normal.
 pub const AREALIGHT_EFFECT_AZIMUTH: u32 = 268435456;
-/// Form factors to float32's own precision, 1e-6.
-pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
-/// As EXACT, and relative precision for lights that look small.
-pub const AREALIGHT_FORM_FACTOR_DIFFERENCE: u32 = 1;
-
 /// Polygons are clipped at the horizon of the lobe's cosine space.
 pub const AREALIGHT_HORIZON_COSINE: u32 = 0;
 /// And at the surface's horizon: nothing leaks from behind the surface.

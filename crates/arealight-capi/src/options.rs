@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::lights::read_effects;
 use crate::types::ArealightPassOptions;
 use arealight::plan::{GBufferLayout, Output, RadianceFormat, ShadeOptions, TileOptions};
-use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, Quality, SpecularLobes};
+use arealight::{Effects, Footprint, Horizon, Lobes, Quality, SpecularLobes};
 
 /// How tiles get their lists; none in a pass without.
 pub(crate) fn tile_options(options: &ArealightPassOptions) -> Option<TileOptions> {
@@ -32,7 +32,6 @@ pub(crate) fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptio
         };
     }
     let quality = Quality {
-        form_factor: of!(form_factor, FormFactor::Exact, FormFactor::Difference),
         horizon: of!(horizon, Horizon::Cosine, Horizon::Both),
         specular_lobes: specular_lobes_of(options.specular_lobes, "options.specular_lobes")?,
         lobes: of!(lobes, Lobes::Table, Lobes::Formula),
@@ -86,17 +85,15 @@ mod tests {
 
     #[test]
     fn constants_are_those_of_the_vocabulary() {
-        let made = |form_factor, horizon, footprint| {
+        let made = |horizon, footprint| {
             let zero = ArealightPassOptions::default();
-            shade_options(&ArealightPassOptions { form_factor, horizon, footprint, ..zero }).unwrap()
+            shade_options(&ArealightPassOptions { horizon, footprint, ..zero }).unwrap()
         };
-        let made_of =
-            made(AREALIGHT_FORM_FACTOR_DIFFERENCE, AREALIGHT_HORIZON_BOTH, AREALIGHT_FOOTPRINT_MIPS);
-        let Quality { form_factor, horizon, footprint, .. } = made_of.quality;
-        let expected = (FormFactor::Difference, Horizon::Both, Footprint::Mips);
-        assert_eq!((form_factor, horizon, footprint), expected);
+        let Quality { horizon, footprint, .. } =
+            made(AREALIGHT_HORIZON_BOTH, AREALIGHT_FOOTPRINT_MIPS).quality;
+        assert_eq!((horizon, footprint), (Horizon::Both, Footprint::Mips));
         // Zero is the default of everything
-        assert_eq!(made(0, 0, 0), ShadeOptions::default());
+        assert_eq!(made(0, 0), ShadeOptions::default());
     }
 
     #[test]
@@ -108,7 +105,7 @@ mod tests {
         for (wrong, field) in [
             (ArealightPassOptions { surfaces: 1 << 30, ..zero }, "options.surfaces"),
             (ArealightPassOptions { surfaces: 16, ..zero }, "options.surfaces: polygon are what lights need"),
-            (ArealightPassOptions { form_factor: 2, ..zero }, "options.form_factor"),
+            (ArealightPassOptions { horizon: 2, ..zero }, "options.horizon"),
             (ArealightPassOptions { horizon: 2, ..zero }, "options.horizon"),
             (ArealightPassOptions { specular_lobes: 3, ..zero }, "options.specular_lobes"),
             (ArealightPassOptions { lobes: 2, ..zero }, "options.lobes"),

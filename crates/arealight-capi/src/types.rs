@@ -105,8 +105,6 @@ pub struct ArealightPassOptions {
     /// _MULTIPLE_SCATTERING, _TRANSMISSION and _THIN_FILM. 0 is DIFFUSE and GLOSSY. What lights need is known
     /// from ArealightFrame.lights.
     pub surfaces: u32,
-    /// One of AREALIGHT_FORM_FACTOR_*.
-    pub form_factor: u32,
     /// One of AREALIGHT_HORIZON_*.
     pub horizon: u32,
     /// One of AREALIGHT_SPECULAR_LOBES_*.

@@ -129,7 +129,7 @@ pub use profile::Profile;
 #[doc(inline)]
 pub use pyramid::PyramidSize;
 #[doc(inline)]
-pub use quality::{Footprint, FormFactor, Horizon, Level, Lobes, Quality, SpecularLobes};
+pub use quality::{Footprint, Horizon, Level, Lobes, Quality, SpecularLobes};
 #[doc(inline)]
 pub use table::{LightTable, TableDescription, TableError, TableSample};
 #[doc(inline)]

@@ -349,7 +349,6 @@ pub fn medium_scatter_specialization(options: MediumOptions, lights: LightSummar
     let has_lists = lights.light_count + lights.shape_count >= options.least_lights;
     vec![
         (kernels::constant::EFFECTS, lights.effects.bits()),
-        (kernels::constant::FORM_FACTOR, options.quality.form_factor as u32),
         (kernels::constant::FOOTPRINT, options.quality.footprint as u32),
         (kernels::constant::HAS_QUADS, u32::from(lights.quad_count > 0)),
         (kernels::constant::MEDIUM_RAYS, if options.shadow_rays { rays } else { 0 }),
@@ -397,7 +396,6 @@ pub fn classify_specialization(
 fn lobe_specialization(effects: Effects, quality: Quality) -> Vec<(u32, u32)> {
     vec![
         (kernels::constant::EFFECTS, effects.bits()),
-        (kernels::constant::FORM_FACTOR, quality.form_factor as u32),
         (kernels::constant::HORIZON, quality.horizon as u32),
         (kernels::constant::SPECULAR_LOBES, quality.specular_lobes as u32),
         (kernels::constant::LOBES, quality.lobes as u32),

@@ -3,22 +3,6 @@
 
 use crate::effects::Effects;
 
-/// How the arcs that a polygon's edges subtend are summed to a form factor.
-///
-/// Either returns a finite number in [0, 1], whatever comes in, and keeps the promises that
-/// `shaders/include/arealight/form_factor/quad.glsl` states.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[repr(u32)]
-pub enum FormFactor {
-    /// float32's own precision, absolute: 1e-6.
-    #[default]
-    Exact = 0,
-    /// As [`FormFactor::Exact`], and relative precision for lights that look small: a sun, a lamp far away.
-    /// Of a light of area A at five times its size, or any larger distance d, the error is at most 1e-6 A /
-    /// (pi d²), both as they are in the lobe's cosine space.
-    Difference = 1,
-}
-
 /// Where a polygon is clipped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
@@ -138,8 +122,6 @@ impl Level {
 /// What a pass is specialised for, choice by choice: of a [`Level`], or of your own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Quality {
-    /// How edges of the polygon are integrated.
-    pub form_factor: FormFactor,
     /// Where polygons are clipped.
     pub horizon: Horizon,
     /// How many lobes the specular one is made of.

@@ -23,9 +23,9 @@ const float AREALIGHT_MIN_ALPHA = 1e-4;
 // Squared lengths below this count as zero: 2^-100, far above float32's smallest normal number.
 const float AREALIGHT_TINY = 7.8886090522101181e-31;
 
-// The sine of the elevation below which an end of a curved outline, or a vertex in the difference form,
-// counts as on the horizon: 1.7 x 2^-24, about what the rounding of a vertex can make of zero. In a lobe's
-// cosine space it is as much narrower as heights are lower there: arealight_horizon_width.
+// The sine of the elevation below which an end of a curved outline counts as on the horizon: 1.7 x 2^-24,
+// about what the rounding of a vertex can make of zero. In a lobe's cosine space it is as much narrower as
+// heights are lower there: arealight_horizon_width.
 const float AREALIGHT_HORIZON_WIDTH = 1e-7;
 
 // The sine of the elevation over a light's plane below which a shading point counts as in it: what rounding

@@ -87,11 +87,6 @@
 #define AREALIGHT_FORMULA 0
 #endif
 
-// Relative precision for small and distant lights (arealight::FormFactor::Difference).
-#ifndef AREALIGHT_DIFFERENCE
-#define AREALIGHT_DIFFERENCE 0
-#endif
-
 // Some light of these kinds is textured (with AREALIGHT_LIGHT_TEXTURES): those whose record says so.
 #ifndef AREALIGHT_TEXTURED_POLYGONS
 #define AREALIGHT_TEXTURED_POLYGONS 1
@@ -187,7 +182,6 @@ const bool AREALIGHT_HAS_TWO_SPECULAR_LOBES = AREALIGHT_USES_FORMULA ? false
 const bool AREALIGHT_WANTS_TWO_SHEEN_LOBES = AREALIGHT_HAS_HALF_VECTORS ? true
     : bool(AREALIGHT_TWO_SPECULAR_LOBES);
 const bool AREALIGHT_HAS_TWO_SHEEN_LOBES = AREALIGHT_HAS_SHEEN ? AREALIGHT_WANTS_TWO_SHEEN_LOBES : false;
-const bool AREALIGHT_USES_DIFFERENCE = bool(AREALIGHT_DIFFERENCE);
 
 const int AREALIGHT_FOOTPRINT_KERNEL = 0; // three fetches of levels by the lobe's own kernel
 const int AREALIGHT_FOOTPRINT_MIPS = 1;   // the article's: one fetch of the image's mips

@@ -1,8 +1,7 @@
-//! The rational functions of `arc.glsl` and `difference.glsl`, evaluated in float64 from the GLSL's own text,
-//! have the errors that their comments state.
+//! The rational functions of `arc.glsl`, evaluated in float64 from the GLSL's own text, have the errors that
+//! their comments state.
 
 const ARC_GLSL: &str = include_str!("../../../shaders/include/arealight/form_factor/arc.glsl");
-const DIFFERENCE_GLSL: &str = include_str!("../../../shaders/include/arealight/form_factor/difference.glsl");
 
 /// Evaluates a GLSL expression of numbers, names, `+ - * /` and parentheses.
 struct Expression<'a> {
@@ -129,19 +128,4 @@ fn the_weight_of_an_acute_arc_has_the_error_that_it_states() {
         variables,
         ratio,
     );
-}
-
-#[test]
-fn the_excess_of_an_arc_has_the_error_that_it_states() {
-    // From where theta / sin(theta) - 1 keeps enough digits of float64; the function is flat below
-    let start = 1e-3;
-    let shifted = move |theta: f64| start + theta;
-    let variables = move |theta: f64| {
-        let half = 0.5 * shifted(theta);
-        // scaled = s chord^2 / 4, chord = 2 sin(theta / 2)
-        vec![("scaled", half.sin().powi(2)), ("y", 2.0 * half.cos())]
-    };
-    let exact = move |theta: f64| ratio(shifted(theta)) - 1.0;
-    let function = (DIFFERENCE_GLSL, "arealight_arc_excess", "return ");
-    assert_error(function, 1.5e-7, std::f64::consts::PI - 2e-3, variables, exact);
 }

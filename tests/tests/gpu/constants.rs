@@ -2,7 +2,7 @@
 
 use arealight::gpu;
 use arealight::plan::{GBufferLayout, Output, RadianceFormat, ShadeOptions};
-use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, SpecularLobes, TileClass, TubeEnds, tiles};
+use arealight::{Effects, Footprint, Horizon, Lobes, SpecularLobes, TileClass, TubeEnds, tiles};
 use std::collections::BTreeMap;
 
 /// The constants whose names begin with `prefix` in a GLSL source, without it, by name. Specialisation
@@ -116,11 +116,9 @@ fn flags_have_the_same_bits_in_glsl() {
 #[test]
 fn choices_have_the_same_numbers_in_glsl() {
     let number = |value: u32| f64::from(value);
-    for (prefix, name, value) in [
-        ("FORM_FACTOR_", "DIFFERENCE", FormFactor::Difference as u32),
-        ("HORIZON_", "BOTH", Horizon::Both as u32),
-        ("LOBES_", "FORMULA", Lobes::Formula as u32),
-    ] {
+    for (prefix, name, value) in
+        [("HORIZON_", "BOTH", Horizon::Both as u32), ("LOBES_", "FORMULA", Lobes::Formula as u32)]
+    {
         assert_constants(EFFECTS_GLSL, prefix, &[(name, number(value))]);
     }
     let specular_lobes = [

@@ -80,7 +80,6 @@ fn code_that_no_light_needs_changes_no_bit() {
     let unused = Effects::all() - Effects::SHAPES - Effects::MODEL - required;
     let plain = Quality::default();
     let dear = Quality {
-        form_factor: FormFactor::Difference,
         horizon: Horizon::Both,
         specular_lobes: SpecularLobes::Two,
         footprint: Footprint::Mips,

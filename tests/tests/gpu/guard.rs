@@ -142,22 +142,17 @@ fn the_guard_is_in_every_module() {
 
 #[test]
 fn the_guard_outlives_the_optimiser() {
-    // The optimiser takes a second and more for each: every path and horizon, with one form each
-    let choices = [(Horizon::Cosine, FormFactor::Exact), (Horizon::Both, FormFactor::Difference)];
+    // The optimiser takes a second and more for each: every path and horizon
     for effects in [Effects::all(), Effects::all() - Effects::POLYGON] {
-        for (horizon, form_factor) in choices {
+        for horizon in [Horizon::Cosine, Horizon::Both] {
             // The other kernel has the same functions
             let kernels = if horizon == Horizon::Both { &[&EVAL, &SHADE][..] } else { &[&EVAL] };
             for kernel in kernels {
-                let constants = [
-                    (constant::EFFECTS, effects.bits()),
-                    (constant::FORM_FACTOR, form_factor as u32),
-                    (constant::HORIZON, horizon as u32),
-                ];
+                let constants = [(constant::EFFECTS, effects.bits()), (constant::HORIZON, horizon as u32)];
                 let Some(words) = optimised(kernel, &constants) else { return };
                 // Inlined for each of two lobes
                 let found = guards(&module(&words));
-                let what = format!("{}, {effects}, {form_factor:?}, {horizon:?}", kernel.name);
+                let what = format!("{}, {effects}, {horizon:?}", kernel.name);
                 assert!(found >= 2, "{what}: {found} comparisons are left for two lobes");
             }
         }

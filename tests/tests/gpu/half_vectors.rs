@@ -12,7 +12,6 @@ const COUNT: usize = 2000;
 
 const LEVEL: Quality = Quality {
     specular_lobes: SpecularLobes::HalfVectors,
-    form_factor: FormFactor::Exact,
     horizon: Horizon::Cosine,
     lobes: Lobes::Table,
     footprint: Footprint::Kernel,

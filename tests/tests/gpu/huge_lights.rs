@@ -100,17 +100,13 @@ fn bound(point: &EvalPoint) -> f64 {
     if point.surface.diffuse_albedo == DVec3::ZERO { 2e-6 } else { 1e-6 }
 }
 
-const FORM_FACTORS: [FormFactor; 2] = [FormFactor::Exact, FormFactor::Difference];
-
 #[test]
 fn ceilings_of_any_size_stay_lit() {
     let Some(engine) = TestEngine::new() else { return };
-    for (is_tilted, form_factor) in
-        [false, true].into_iter().flat_map(|tilt| FORM_FACTORS.map(|how| (tilt, how)))
-    {
-        let quality = Quality { form_factor, ..Quality::default() };
+    for is_tilted in [false, true] {
+        let quality = Quality::default();
         let points = points(is_tilted);
-        let what = format!("tilted: {is_tilted}, {form_factor:?}");
+        let what = format!("tilted: {is_tilted}");
         engine.beside_polygon_twin(what, quality, &points, bound).assert_all();
         let bright = points.iter().filter(|point| polygon_twin(quality, point).x > 0.3).count();
         assert!(bright > points.len() / 2, "{bright} are lit");
@@ -120,14 +116,12 @@ fn ceilings_of_any_size_stay_lit() {
 #[test]
 fn with_both_horizons_too_where_the_surface_is_parallel() {
     let Some(engine) = TestEngine::new() else { return };
-    for form_factor in FORM_FACTORS {
-        let quality = Quality { form_factor, horizon: Horizon::Both, ..Quality::default() };
-        engine.assert_follows_polygon_twin("parallel", quality, &points(false), bound, |surface| {
-            // The twin: another roughness, and another albedo
-            let diffuse_albedo = 0.9 * surface.diffuse_albedo;
-            Surface { alpha: 0.9 * surface.alpha, f0: 0.9 * surface.f0, diffuse_albedo, ..*surface }
-        });
-    }
+    let quality = Quality { horizon: Horizon::Both, ..Quality::default() };
+    engine.assert_follows_polygon_twin("parallel", quality, &points(false), bound, |surface| {
+        // The twin: another roughness, and another albedo
+        let diffuse_albedo = 0.9 * surface.diffuse_albedo;
+        Surface { alpha: 0.9 * surface.alpha, f0: 0.9 * surface.f0, diffuse_albedo, ..*surface }
+    });
 }
 
 #[test]
@@ -142,13 +136,11 @@ fn a_light_is_lit_from_just_above_its_plane_and_not_in_it() {
         let light = ceiling(&mut Stream::new("sweep", 1, 1), axes, 1e7, height);
         EvalPoint { surface: diffuse, position: DVec3::ZERO, normal: DVec3::Z, view: DVec3::Z, light }
     });
-    for form_factor in FORM_FACTORS {
-        let answers = engine.eval(&points, Quality { form_factor, ..Quality::default() }).unwrap();
-        for (height, answer) in heights.into_iter().zip(answers) {
-            let expected = if height > 0.0 { 1.0 } else { 0.0 };
-            // All of a hemisphere but the light's edge
-            assert!((answer.x - expected).abs() < 1e-6, "{form_factor:?} at {height:e}: {answer}");
-        }
+    let answers = engine.eval(&points, Quality::default()).unwrap();
+    for (height, answer) in heights.into_iter().zip(answers) {
+        let expected = if height > 0.0 { 1.0 } else { 0.0 };
+        // All of a hemisphere but the light's edge
+        assert!((answer.x - expected).abs() < 1e-6, "at {height:e}: {answer}");
     }
 }
 
@@ -174,13 +166,10 @@ fn in_plane(beside: f64) -> Vec<EvalPoint> {
 #[test]
 fn a_light_in_the_plane_of_its_point_sends_nothing() {
     let Some(engine) = TestEngine::new() else { return };
-    for (beside, form_factor) in [0.2, 1.5, 30.0].into_iter().flat_map(|at| FORM_FACTORS.map(|how| (at, how)))
-    {
-        let points = in_plane(beside);
-        let quality = Quality { form_factor, ..Quality::default() };
-        let answers = engine.eval(&points, quality).unwrap();
+    for beside in [0.2, 1.5, 30.0] {
+        let answers = engine.eval(&in_plane(beside), Quality::default()).unwrap();
         let lit = answers.iter().filter(|answer| **answer != Vec3::ZERO).count();
-        assert_eq!(lit, 0, "{form_factor:?}, {beside} radii away");
+        assert_eq!(lit, 0, "{beside} radii away");
     }
     // The twin: a millionth of their size before them
     let before = in_plane(0.2).into_iter().map(|point| {

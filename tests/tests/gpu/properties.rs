@@ -11,7 +11,6 @@ use relations::{HOLE, RELATIONS};
 mod boxes;
 mod horizons;
 mod relations;
-mod switches;
 
 /// Groups of each property.
 const COUNT: usize = 300;
@@ -73,7 +72,6 @@ fn lambert_lobes_keep_every_property() {
     degenerate_lights_are_dark(&engine, &levels);
     quads_are_as_polygons(&engine, None, Horizon::Cosine);
     horizons::a_light_rises_without_a_jump(&engine, &levels);
-    switches::the_difference_form_begins_without_a_jump(&engine);
 }
 
 #[test]
@@ -123,7 +121,7 @@ fn scaling_by_a_power_of_two_changes_no_bit(
         let points: Vec<EvalPoint> = (0..COUNT)
             .map(|index| {
                 let mut vertices = outline(&mut random, level.path, index);
-                // Some are small and far, for the difference form
+                // Some are small and far
                 let far = DVec3::Z * 10.0_f64.powf(random.between(-2.0, 4.0));
                 for vertex in &mut vertices {
                     *vertex += if index % 3 == 0 { far } else { DVec3::ZERO };

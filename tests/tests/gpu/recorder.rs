@@ -95,7 +95,7 @@ fn constants_are_checked_against_the_manifest() {
     let error = unsafe { ComputePass::new(engine.context(), &EVAL, &[(constant::OUTPUT, 1)]) }.unwrap_err();
     assert_eq!(field(&error), "specialization");
     // SAFETY: As above.
-    let pass = unsafe { ComputePass::new(engine.context(), &EVAL, &[(constant::FORM_FACTOR, 1)]) }.unwrap();
+    let pass = unsafe { ComputePass::new(engine.context(), &EVAL, &[(constant::HORIZON, 1)]) }.unwrap();
     engine
         .host()
         .submit(|commands| {

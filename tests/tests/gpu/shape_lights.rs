@@ -9,8 +9,6 @@ use arealight_tests::shapes::lobe_arguments;
 
 const COSINE: u32 = 0;
 const BOTH: u32 = 1;
-/// The forms of the form factor that wild bits go through.
-const FORM_FACTORS: [u32; 2] = [0, 1];
 
 /// A disk, with two rows of a lobe's matrix and the length of the third.
 struct Case {
@@ -66,32 +64,30 @@ fn disks_and_spheres_are_clipped_where_they_should() {
     let cases = cases(101, 1000);
     let arguments: Vec<_> =
         cases.iter().map(|case| lobe_arguments(&case.disk, case.rows, case.alpha)).collect();
-    for level in [0, 1, 2] {
-        let bound = if level == 1 { 4e-5 } else { 4e-6 };
-        let both = engine.lobes(BOTH, level, &arguments);
-        let one = engine.lobes(COSINE, level, &arguments);
-        let mut comparison = Comparison::new(format!("disks and spheres, level {level}"));
-        let (mut cut, mut hidden) = (0, 0);
-        for (index, case) in cases.iter().enumerate() {
-            let place = || format!("{:?}, {:?}", case.disk, case.matrix());
-            let radius = case.disk.axis_u.x.abs();
-            let silhouette = Sphere { center: case.disk.center, radius }.silhouette();
-            for (answers, horizon) in [(&one, false), (&both, true)] {
-                // The N-gon of 1024 sides is off by its curvature's fourth order, and by its own clip: 1e-6
-                comparison.add(answers[index][0].into(), case.truth(&case.disk, horizon), bound, place);
-                if case.disk.axis_u.x > 0.0 {
-                    let expected = silhouette.map_or(1.0, |disk| case.truth(&disk, horizon));
-                    comparison.add(answers[index][1].into(), expected, bound, place);
-                }
+    let bound = 4e-6;
+    let both = engine.lobes(BOTH, &arguments);
+    let one = engine.lobes(COSINE, &arguments);
+    let mut comparison = Comparison::new("disks and spheres");
+    let (mut cut, mut hidden) = (0, 0);
+    for (index, case) in cases.iter().enumerate() {
+        let place = || format!("{:?}, {:?}", case.disk, case.matrix());
+        let radius = case.disk.axis_u.x.abs();
+        let silhouette = Sphere { center: case.disk.center, radius }.silhouette();
+        for (answers, horizon) in [(&one, false), (&both, true)] {
+            // The N-gon of 1024 sides is off by its curvature's fourth order, and by its own clip: 1e-6
+            comparison.add(answers[index][0].into(), case.truth(&case.disk, horizon), bound, place);
+            if case.disk.axis_u.x > 0.0 {
+                let expected = silhouette.map_or(1.0, |disk| case.truth(&disk, horizon));
+                comparison.add(answers[index][1].into(), expected, bound, place);
             }
-            // The twin: what the surface's horizon takes away
-            let taken = one[index][0] - both[index][0];
-            cut += usize::from(f64::from(taken) > 3.0 * bound && both[index][0] > 0.0);
-            hidden += usize::from(f64::from(taken) > 3.0 * bound && both[index][0] == 0.0);
         }
-        comparison.assert_all();
-        assert!(cut > 50 && hidden > 20, "{cut} cut, {hidden} hidden");
+        // The twin: what the surface's horizon takes away
+        let taken = one[index][0] - both[index][0];
+        cut += usize::from(f64::from(taken) > 3.0 * bound && both[index][0] > 0.0);
+        hidden += usize::from(f64::from(taken) > 3.0 * bound && both[index][0] == 0.0);
     }
+    comparison.assert_all();
+    assert!(cut > 50 && hidden > 20, "{cut} cut, {hidden} hidden");
 }
 
 #[test]
@@ -111,14 +107,14 @@ fn a_disk_in_the_plane_of_the_surface_sends_nothing() {
         arguments.push(lobe_arguments(&disk, rows, 1.0));
     }
     for horizon in [COSINE, BOTH] {
-        let lit = engine.lobes(horizon, 0, &arguments).iter().filter(|found| found[0] != 0.0).count();
+        let lit = engine.lobes(horizon, &arguments).iter().filter(|found| found[0] != 0.0).count();
         assert_eq!(lit, 0);
     }
     // The twin: a little higher, those about the point fill the sky
     for arguments in &mut arguments {
         arguments[0][2] = 1e-5;
     }
-    let lit = engine.lobes(COSINE, 0, &arguments).iter().filter(|found| found[0] > 0.9).count();
+    let lit = engine.lobes(COSINE, &arguments).iter().filter(|found| found[0] > 0.9).count();
     assert!(lit > 500, "{lit}");
 }
 
@@ -143,17 +139,15 @@ fn any_bits_give_a_form_factor() {
         arguments.push(given);
     }
     for horizon in [COSINE, BOTH] {
-        for level in FORM_FACTORS {
-            let found = engine.lobes(horizon, level, &arguments);
-            let wrong: Vec<_> = found
-                .iter()
-                .zip(&arguments)
-                .filter(|(found, _)| found.iter().any(|f| f.to_bits() > 1.0_f32.to_bits()))
-                .collect();
-            let partial = found.iter().flatten().filter(|f| **f > 0.0 && **f < 1.0).count();
-            assert!(wrong.is_empty(), "{horizon}, {level}: {} of them: {:?}", wrong.len(), wrong[0]);
-            // The twin: it is not that all are dark
-            assert!(partial > 1000, "{partial}");
-        }
+        let found = engine.lobes(horizon, &arguments);
+        let wrong: Vec<_> = found
+            .iter()
+            .zip(&arguments)
+            .filter(|(found, _)| found.iter().any(|f| f.to_bits() > 1.0_f32.to_bits()))
+            .collect();
+        let partial = found.iter().flatten().filter(|f| **f > 0.0 && **f < 1.0).count();
+        assert!(wrong.is_empty(), "{horizon}: {} of them: {:?}", wrong.len(), wrong[0]);
+        // The twin: it is not that all are dark
+        assert!(partial > 1000, "{partial}");
     }
 }

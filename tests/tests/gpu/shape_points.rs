@@ -55,7 +55,7 @@ fn grown(shape: &LightShape, by: f64) -> LightShape {
 }
 
 fn precise() -> Quality {
-    Quality { form_factor: FormFactor::Difference, specular_lobes: SpecularLobes::Two, ..Quality::default() }
+    Quality { specular_lobes: SpecularLobes::Two, ..Quality::default() }
 }
 
 fn widened(radiance: Vec3) -> [f64; 3] {

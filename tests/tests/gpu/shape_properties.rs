@@ -8,11 +8,6 @@ use arealight_tests::Numbers;
 use arealight_tests::prelude::*;
 use arealight_tests::shapes::{ShapeArguments, ShapeFunction, ellipse_arguments};
 
-const EXACT: u32 = 0;
-const DIFFERENCE: u32 = 1;
-/// The forms of the form factor.
-const FORM_FACTORS: [u32; 2] = [0, 1];
-
 fn generic(count: u64) -> Vec<Ellipse> {
     let families = ["generic", "crossing"].map(|name| Family::find(name).unwrap());
     (0..count).map(|index| families[index as usize % 2].case(index, 0)).collect()
@@ -21,7 +16,7 @@ fn generic(count: u64) -> Vec<Ellipse> {
 /// Form factors of both rounded ellipses of each pair.
 fn pairs(engine: &TestEngine, pairs: &[[Ellipse; 2]]) -> Vec<[f64; 2]> {
     let flat: Vec<Ellipse> = pairs.iter().flatten().map(rounded).collect();
-    let found = engine.ellipses(ShapeFunction::Ellipse, EXACT, &flat);
+    let found = engine.ellipses(ShapeFunction::Ellipse, &flat);
     found.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
@@ -159,18 +154,16 @@ fn nothing_jumps_past_the_horizon() {
         }
     }
     let truth: Vec<f64> = sweeps.iter().map(|case| form_factor(case).abs()).collect();
-    for (level, bound) in [(EXACT, 6e-7), (DIFFERENCE, 6e-7)] {
-        let found = engine.ellipses(ShapeFunction::Ellipse, level, &sweeps);
-        let errors: Vec<f64> = found.iter().zip(&truth).map(|(f, t)| f - t).collect();
-        for (sweep, errors) in sweeps.chunks_exact(STEPS + 1).zip(errors.chunks_exact(STEPS + 1)) {
-            // Beyond what float64 changes by
-            let jump = errors.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
-            assert!(jump < bound, "level {level}: {jump:e} of {:?}", sweep[0]);
-        }
+    let found = engine.ellipses(ShapeFunction::Ellipse, &sweeps);
+    let errors: Vec<f64> = found.iter().zip(&truth).map(|(f, t)| f - t).collect();
+    for (sweep, errors) in sweeps.chunks_exact(STEPS + 1).zip(errors.chunks_exact(STEPS + 1)) {
+        // Beyond what float64 changes by
+        let jump = errors.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        assert!(jump < 6e-7, "{jump:e} of {:?}", sweep[0]);
     }
     // The twin: the published disk errs by much more on the way
     let arguments: Vec<_> = sweeps.iter().map(ellipse_arguments).collect();
-    let found = engine.shapes(ShapeFunction::Published, 1, &arguments);
+    let found = engine.shapes(ShapeFunction::Published, &arguments);
     let errors: Vec<f64> = found.iter().zip(&truth).map(|(f, t)| (f64::from(f[0]) - t).abs()).collect();
     for errors in errors.chunks_exact(STEPS + 1) {
         assert!(errors.iter().fold(0.0_f64, |a, b| a.max(*b)) > 1e-4);
@@ -200,7 +193,7 @@ fn nothing_jumps_where_formulas_change() {
         cases.extend([at(1e-4, -1.0_f64.cos() - 1e-5), at(1e-4, -1.0_f64.cos() + 1e-5)]);
         scales.extend([1.0, 1e-12 * thin]);
     }
-    let found = engine.ellipses(ShapeFunction::Ellipse, DIFFERENCE, &cases);
+    let found = engine.ellipses(ShapeFunction::Ellipse, &cases);
     let errors: Vec<_> = found.iter().zip(&cases).map(|(f, e)| f - form_factor(e).abs()).collect();
     let jumps: Vec<_> =
         errors.chunks_exact(2).zip(&scales).map(|(pair, scale)| (pair[1] - pair[0]).abs() / scale).collect();
@@ -221,7 +214,7 @@ fn inscribed_polygons_tend_to_it() {
         .into_iter()
         .filter(|e| (0..64).all(|i| e.point(f64::from(i) * 0.1).length() > 0.1))
         .collect();
-    let found = engine.ellipses(ShapeFunction::Ellipse, EXACT, &cases);
+    let found = engine.ellipses(ShapeFunction::Ellipse, &cases);
     let mut errors: [Vec<f64>; 2] = [vec![], vec![]];
     for (case, found) in cases.iter().zip(found) {
         for (errors, count) in errors.iter_mut().zip([64, 512]) {
@@ -256,7 +249,7 @@ fn in_contact_it_is_all_there_is(engine: &TestEngine) {
     }
     let mut comparison = Comparison::new("contact");
     let mut twin = 0;
-    for (case, found) in cases.iter().zip(engine.ellipses(ShapeFunction::Ellipse, EXACT, &cases)) {
+    for (case, found) in cases.iter().zip(engine.ellipses(ShapeFunction::Ellipse, &cases)) {
         let place = case.center.truncate().length();
         let slope = case.center.z / (1.0 - place).abs();
         let [inside, outside] = [1.0, 0.0];
@@ -289,29 +282,23 @@ fn any_bits_give_a_form_factor() {
     }
     let bad_input = |given: &ShapeArguments| given[..3].iter().any(|v| v[..3].iter().any(|c| !c.is_finite()));
     for function in [Ellipse, Sphere, Silhouette] {
-        for level in FORM_FACTORS {
-            let found = engine.shapes(function, level, &arguments);
-            let (mut wrong, mut partial) = (Vec::new(), 0);
-            for (given, found) in arguments.iter().zip(&found) {
-                let must_be_dark = function == Ellipse && bad_input(given);
-                let largest = if must_be_dark { 0.0_f32 } else { 1.0 };
-                if found[0].to_bits() > largest.to_bits() {
-                    wrong.push((given, found[0]));
-                }
-                partial += usize::from(found[0] > 0.0 && found[0] < 1.0);
+        let found = engine.shapes(function, &arguments);
+        let (mut wrong, mut partial) = (Vec::new(), 0);
+        for (given, found) in arguments.iter().zip(&found) {
+            let must_be_dark = function == Ellipse && bad_input(given);
+            let largest = if must_be_dark { 0.0_f32 } else { 1.0 };
+            if found[0].to_bits() > largest.to_bits() {
+                wrong.push((given, found[0]));
             }
-            println!("{function:?}, level {level}: {partial} between 0 and 1");
-            assert!(
-                wrong.is_empty(),
-                "{function:?}, {level}: {} of them: {:?}",
-                wrong.len(),
-                &wrong[..wrong.len().min(3)]
-            );
-            // The twin: it is not that all are dark
-            assert!(partial > 2000, "{partial}");
+            partial += usize::from(found[0] > 0.0 && found[0] < 1.0);
         }
+        println!("{function:?}: {partial} between 0 and 1");
+        let some = &wrong[..wrong.len().min(3)];
+        assert!(wrong.is_empty(), "{function:?}: {} of them: {some:?}", wrong.len());
+        // The twin: it is not that all are dark
+        assert!(partial > 2000, "{partial}");
     }
     // The twin: the published disk is no form factor for many of the same
-    let found = engine.shapes(ShapeFunction::Published, 1, &arguments);
+    let found = engine.shapes(ShapeFunction::Published, &arguments);
     assert!(found.iter().filter(|found| found[0].to_bits() > 1.0_f32.to_bits()).count() > 10_000);
 }

@@ -1,6 +1,6 @@
 //! Slim tubes that the horizon cuts, and the worst tubes of long batteries.
 
-use super::tubes::{COUNT, DIFFERENCE, ENDS, EXACT, distance, found, is_thin, round};
+use super::tubes::{COUNT, ENDS, distance, found, is_thin, round};
 use arealight_cases::hard::nearby_shape;
 use arealight_oracle::tube::{Ends, Tube, form_factor};
 use arealight_tests::prelude::*;
@@ -39,7 +39,7 @@ fn a_slim_tube_is_cut_at_a_slant() {
     for ends in ENDS {
         let tubes = slanting_tubes(ends);
         let mut comparison = Comparison::new(format!("{ends:?}, slanting"));
-        let found = found(&engine, DIFFERENCE, &tubes, &[DMat3::IDENTITY; COUNT]);
+        let found = found(&engine, &tubes, &[DMat3::IDENTITY; COUNT]);
         for (tube, found) in tubes.iter().zip(found) {
             assert!(is_thin(tube, &DMat3::IDENTITY) && tube.start.z * tube.end.z < 0.0, "{tube:?}");
             let truth = form_factor(tube);
@@ -85,9 +85,9 @@ fn the_worst_tubes_of_long_batteries_are_as_promised() {
         let shown = tube.radius * 2.0 * tube.start.distance(tube.end) / std::f64::consts::PI;
         (found - form_factor(tube)).abs() * center.length_squared() / shown
     };
-    let exact = found(&engine, EXACT, &[near], &[DMat3::IDENTITY])[0];
+    let exact = found(&engine, &[near], &[DMat3::IDENTITY])[0];
     assert!(backward(exact) < 1e-6 && backward(0.524_428_84) > 1e-6, "{exact}");
-    let found = found(&engine, DIFFERENCE, &[between, end], &[DMat3::IDENTITY; 2]);
+    let found = found(&engine, &[between, end], &[DMat3::IDENTITY; 2]);
     for ((tube, found), before) in [between, end].iter().zip(found).zip([1.991_996_1e-6, 5.875_368e-13]) {
         assert!(relative(tube, found) < 1e-5 && relative(tube, before) > 1e-5, "{tube:?}: {found:e}");
     }

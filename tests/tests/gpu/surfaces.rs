@@ -96,13 +96,8 @@ fn check(engine: &TestEngine, table: &LightTable, what: &str, points: &[EvalPoin
         let mut shifted = Comparison::new("a point as the next one");
         for (index, (found, judge)) in found.iter().zip(&judges).enumerate() {
             let place = || format!("point {index}, {judge:?}: {:?}", points[index]);
-            comparison.add(*found, judge.expected(), judge.bound(level), place);
-            shifted.add(
-                *found,
-                judges[(index + 1) % judges.len()].expected(),
-                judge.bound(level),
-                String::new,
-            );
+            comparison.add(*found, judge.expected(), judge.bound(), place);
+            shifted.add(*found, judges[(index + 1) % judges.len()].expected(), judge.bound(), String::new);
         }
         comparison.assert_all();
         assert!(shifted.failures() > points.len() / 3, "the twin: {} noticed", shifted.failures());
@@ -163,7 +158,6 @@ fn hard_surfaces_of_a_table_in_float16_are_that_tables() {
     let level = Level::of(&[Path::Polygon], &[Horizon::Cosine])[0];
     let found = engine.factors(&given, Effects::GLOSSY, level);
     let judges = judges(&TABLE, &points, &given, Horizon::Cosine);
-    let apart =
-        found.iter().zip(&judges).filter(|(f, j)| (**f - j.expected()).abs() > j.bound(level)).count();
+    let apart = found.iter().zip(&judges).filter(|(f, j)| (**f - j.expected()).abs() > j.bound()).count();
     assert!(apart > COUNT / 10, "{apart} differ");
 }

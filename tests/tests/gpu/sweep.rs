@@ -148,7 +148,7 @@ fn check(concave: bool) {
         let expected: Vec<f64> = judges.iter().map(|(d, g)| d.expected() + g.expected()).collect();
         for level in Level::of(&[path], &[horizon]) {
             let found = sweep.shade(level);
-            let bounds: Vec<f64> = judges.iter().map(|(d, g)| d.bound(level) + g.bound(level)).collect();
+            let bounds: Vec<f64> = judges.iter().map(|(d, g)| d.bound() + g.bound()).collect();
             let mut frames = Comparison::new(format!("frames, {level}"));
             let mut later = Comparison::new("a frame as the next one");
             let mut jumps = Comparison::new(format!("jumps, {level}"));

@@ -108,12 +108,7 @@ fn without_texture(points: &[EvalPoint]) -> Vec<EvalPoint> {
 fn qualities() -> [Quality; 3] {
     let level = |footprint| Quality { footprint, ..Quality::default() };
     let [kernel, mips] = FOOTPRINTS.map(level);
-    let dear = Quality {
-        form_factor: FormFactor::Difference,
-        specular_lobes: SpecularLobes::Two,
-        horizon: Horizon::Both,
-        ..kernel
-    };
+    let dear = Quality { specular_lobes: SpecularLobes::Two, horizon: Horizon::Both, ..kernel };
     [kernel, mips, dear]
 }
 
@@ -151,8 +146,7 @@ fn lookups_are_those_of_their_float64_twins() {
     let mut given = points(4, SPLIT, 900);
     given.retain(|point| point.surface == lambert_surface());
     for one in FOOTPRINTS {
-        // Relative precision, as lights may be small
-        let quality = Quality { form_factor: FormFactor::Difference, footprint: one, ..Quality::default() };
+        let quality = Quality { footprint: one, ..Quality::default() };
         let answers = engine.eval(&given, quality).unwrap();
         let plain = engine.eval(&without_texture(&given), quality).unwrap();
         let mut comparison = Comparison::new(format!("{one:?}"));
@@ -340,7 +334,7 @@ fn far_light(engine: &TestEngine, surface: &Surface, footprint: Footprint) -> Ve
     let corner = |x: f64, y: f64| DVec3::new(x, y, 1e3);
     let vertices = vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
     let mut far = point(*surface, DVec3::Z, vertices, false);
-    let quality = Quality { form_factor: FormFactor::Difference, footprint, ..Quality::default() };
+    let quality = Quality { footprint, ..Quality::default() };
     let plain = engine.eval(&[far.clone()], quality).unwrap()[0];
     let uvs = vec![DVec2::ZERO, DVec2::Y, DVec2::ONE, DVec2::X];
     far.light.texture = Some(LightTexture { layer: SPLIT, uvs });

@@ -86,12 +86,7 @@ fn showing(points: &[EvalPoint], texture: Option<u32>) -> Vec<EvalPoint> {
 
 /// The kernel, and of what both horizons leave mips. A software driver takes seconds for each pipeline.
 fn qualities() -> [Quality; 2] {
-    let mips = Quality {
-        form_factor: FormFactor::Difference,
-        horizon: Horizon::Both,
-        footprint: Footprint::Mips,
-        ..Quality::default()
-    };
+    let mips = Quality { horizon: Horizon::Both, footprint: Footprint::Mips, ..Quality::default() };
     [Quality::default(), mips]
 }
 

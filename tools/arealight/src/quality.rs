@@ -1,17 +1,13 @@
 //! Quality levels, as options of a command.
 
 use crate::failure::Failure;
-use arealight::{Effects, Footprint, FormFactor, Horizon, Level, LightTable, Lobes, Quality, SpecularLobes};
+use arealight::{Effects, Footprint, Horizon, Level, LightTable, Lobes, Quality, SpecularLobes};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::path::PathBuf;
 
 /// A choice within a level: its word, what it is, and the choice.
 type Choice<T> = (&'static str, &'static str, T);
 
-const FORM_FACTORS: [Choice<FormFactor>; 2] = [
-    ("exact", "float32's own precision, absolute: 1e-6", FormFactor::Exact),
-    ("difference", "As exact, and as precise relative to lights that look small", FormFactor::Difference),
-];
 const HORIZONS: [Choice<Horizon>; 2] = [
     (
         "cosine",
@@ -55,9 +51,6 @@ pub struct QualityArguments {
     /// brushed metal, thin films or coats half-vectors]
     #[arg(long, value_name = "LEVEL", value_parser = level_parser())]
     level: Option<Level>,
-    /// Within the level: how edges of lights are integrated
-    #[arg(long, value_name = "HOW", value_parser = word_of(&FORM_FACTORS))]
-    form_factor: Option<FormFactor>,
     /// Within the level: where lights are clipped
     #[arg(long, value_name = "WHERE", value_parser = word_of(&HORIZONS))]
     horizon: Option<Horizon>,
@@ -104,7 +97,6 @@ impl QualityArguments {
             chosen => chosen,
         };
         Quality {
-            form_factor: self.form_factor.unwrap_or(default.form_factor),
             horizon: self.horizon.unwrap_or(default.horizon),
             specular_lobes,
             lobes,
@@ -136,7 +128,6 @@ pub fn said(quality: Quality) -> serde_json::Value {
         choices.iter().find(|(.., choice)| choice == chosen).map_or("", |(word, ..)| *word)
     }
     serde_json::json!({
-        "form_factor": word(&FORM_FACTORS, &quality.form_factor),
         "horizon": word(&HORIZONS, &quality.horizon),
         "specular_lobes": word(&SPECULAR_LOBES, &quality.specular_lobes),
         "lobes": word(&LOBES, &quality.lobes),

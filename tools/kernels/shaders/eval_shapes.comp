@@ -8,7 +8,6 @@
 layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
-layout(constant_id = 1) const int FORM_FACTOR = 0;
 layout(constant_id = 4) const int HORIZON = 0;
 layout(constant_id = 5) const int SPECULAR_LOBES = 0;
 layout(constant_id = 6) const int LOBES = 0;

@@ -9,7 +9,6 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
-layout(constant_id = 1) const int FORM_FACTOR = 0;
 layout(constant_id = 2) const int POSITION_SOURCE = 0;
 layout(constant_id = 3) const int OUTPUT = 0;
 layout(constant_id = 4) const int HORIZON = 0;

@@ -14,7 +14,6 @@ layout(constant_id = 2) const bool TWO_SIDED = false;
 layout(constant_id = 3) const bool SURFACE_HORIZON = false;
 layout(constant_id = 4) const bool TWO_SPECULAR_LOBES = false;
 layout(constant_id = 5) const bool FORMULA = false;
-layout(constant_id = 6) const bool DIFFERENCE = false;
 layout(constant_id = 7) const int FOOTPRINT = 0;
 layout(constant_id = 8) const bool COAT = false;
 layout(constant_id = 9) const bool COAT_NORMAL = false;
@@ -28,7 +27,6 @@ layout(constant_id = 13) const bool THIN_FILM = false;
 #define AREALIGHT_SURFACE_HORIZON SURFACE_HORIZON
 #define AREALIGHT_TWO_SPECULAR_LOBES TWO_SPECULAR_LOBES
 #define AREALIGHT_FORMULA FORMULA
-#define AREALIGHT_DIFFERENCE DIFFERENCE
 #define AREALIGHT_FOOTPRINT FOOTPRINT
 #define AREALIGHT_COAT COAT
 #define AREALIGHT_COAT_NORMAL COAT_NORMAL

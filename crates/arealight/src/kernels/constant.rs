@@ -2,8 +2,6 @@
 
 /// [`crate::Effects`] as bits.
 pub const EFFECTS: u32 = 0;
-/// [`crate::FormFactor`].
-pub const FORM_FACTOR: u32 = 1;
 /// [`crate::plan::ShadeOptions::from_depth`].
 pub const POSITION_SOURCE: u32 = 2;
 /// [`crate::plan::ShadeOptions::output_bits`].

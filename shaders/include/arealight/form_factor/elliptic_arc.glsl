@@ -237,8 +237,8 @@ bool arealight_is_small_ellipse(ArealightEllipse ellipse) {
 // For any bits the result is a finite number in [0, 1].
 //
 // Error: within 6e-7 of the interval of values of the ellipses whose center and axes differ by 4 x 2^-24 of
-// their lengths. In the difference form a far ellipse that crosses the horizon keeps relative precision too:
-// 3e-6 + 2 (size / distance)^2; one that does not has it anyway.
+// their lengths. A far ellipse keeps relative precision; one that crosses the horizon 3e-6 + 2 (size /
+// distance)^2.
 float arealight_ellipse_form_factor(vec3 center, vec3 axis_u, vec3 axis_v, bool two_sided) {
     ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
     float root = arealight_confocal_root(ellipse);
@@ -249,7 +249,7 @@ float arealight_ellipse_form_factor(vec3 center, vec3 axis_u, vec3 axis_v, bool 
         form_factor = 0.0;
     } else if (ellipse.height >= ellipse.rise) {
         form_factor = arealight_whole_ellipse(ellipse, root);
-    } else if (AREALIGHT_USES_DIFFERENCE && arealight_is_small_ellipse(ellipse)) {
+    } else if (arealight_is_small_ellipse(ellipse)) {
         form_factor = arealight_small_ellipse_crossing(ellipse, up);
     } else {
         ArealightCone cone = arealight_ellipse_cone(ellipse, root);

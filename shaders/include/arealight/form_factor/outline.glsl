@@ -7,7 +7,7 @@
 // horizon z = 0 of its space: edge by edge as they pass, without a vertex array, a limit to the number of
 // vertices, or a table of cases.
 //
-//     ArealightOutline outline = arealight_outline_begin();
+//     ArealightOutline outline = arealight_outline_begin(center);
 //     for each edge: arealight_outline_edge(outline, from, to);   // unit vectors
 //     vec3 vector = arealight_outline_vector(outline);
 //
@@ -15,22 +15,32 @@
 // with its length (1024: 1.4e-6).
 struct ArealightOutline {
     vec3 arcs; // the sum so far
+    vec3 about; // the direction from which crossings are taken, of any length
     vec2 turn; // how far the outline has to turn along the horizon to be closed, as a complex number
 };
 
-ArealightOutline arealight_outline_begin() {
-    return ArealightOutline(vec3(0.0), vec2(1.0, 0.0));
+// Where an outline may begin whose error need not be as small as it.
+const vec3 AREALIGHT_ANYWHERE = vec3(1.0, 0.0, 0.0);
+
+// Begins an outline about a direction, of any length. Where that is amid a small outline, crossings keep
+// their digits, and the error is as small as the outline; elsewhere it is that of one as large as a unit.
+ArealightOutline arealight_outline_begin(vec3 about) {
+    return ArealightOutline(vec3(0.0), about, vec2(1.0, 0.0));
 }
 
-// How far an outline has to turn along the horizon to be closed, after a crossing more, a unit vector;
-// `exits`: there the outline goes down.
+// Tells an outline of a crossing more, a unit vector; `exits`: there the outline goes down.
 //
 // The crossings of a flat, simple polygon lie on one line, and the angles between them, seen from beside that
 // line, add up to less than pi: so it is enough to know their sum's direction, as a product of complex
 // numbers.
-vec2 arealight_turned_by(vec2 turn, vec2 crossing, bool exits) {
-    float y = exits ? -crossing.y : crossing.y;
-    return vec2(turn.x * crossing.x - turn.y * y, turn.x * y + turn.y * crossing.x);
+void arealight_outline_crossing(inout ArealightOutline outline, vec2 crossing, bool exits) {
+    float square = dot(outline.about.xy, outline.about.xy);
+    vec2 zero = square > 0.0 ? outline.about.xy * inversesqrt(square) : vec2(1.0, 0.0);
+    vec2 along = crossing - zero;
+    float y = zero.x * along.y - zero.y * along.x;
+    vec2 by = vec2(dot(zero, crossing), exits ? -y : y);
+    vec2 turn = outline.turn;
+    outline.turn = vec2(turn.x * by.x - turn.y * by.y, turn.x * by.y + turn.y * by.x);
 }
 
 // The arc along the horizon that closes an outline, from how far it has to turn; `half_turn` and `front` as
@@ -47,7 +57,7 @@ void arealight_outline_edge(inout ArealightOutline outline, vec3 from, vec3 to) 
     if (from_above || to_above) {
         if (from_above != to_above) {
             vec2 crossing = (from_above ? 1.0 : -1.0) * arealight_crossing(from, to);
-            outline.turn = arealight_turned_by(outline.turn, crossing, from_above);
+            arealight_outline_crossing(outline, crossing, from_above);
             from.xy = from_above ? from.xy : crossing;
             to.xy = to_above ? to.xy : crossing;
         }
@@ -79,9 +89,9 @@ struct ArealightClippedOutline {
     bool begun;
 };
 
-// Begins at the polygon's last vertex.
-ArealightClippedOutline arealight_clipped_begin(vec3 last) {
-    return ArealightClippedOutline(arealight_outline_begin(), last, vec3(0.0), vec3(0.0), false);
+// Begins at the polygon's last vertex; `about` as arealight_outline_begin's, in the lobe's space.
+ArealightClippedOutline arealight_clipped_begin(vec3 last, vec3 about) {
+    return ArealightClippedOutline(arealight_outline_begin(about), last, vec3(0.0), vec3(0.0), false);
 }
 
 // Goes on to a vertex of what is left, in the shading frame.

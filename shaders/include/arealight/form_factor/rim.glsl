@@ -143,12 +143,12 @@ void arealight_outline_rim(inout ArealightOutline outline, ArealightRimArc arc, 
     vec2 end = arc.end;
     if (!first_above || dip) {
         vec2 rise = vec2(top.x * cosine + top.y * sine, top.y * cosine - top.x * sine);
-        outline.turn = arealight_turned_by(outline.turn, arealight_cone_crossing(cone, rise), !(way > 0.0));
+        arealight_outline_crossing(outline, arealight_cone_crossing(cone, rise), !(way > 0.0));
         begin = first_above ? begin : rise;
     }
     if (!last_above || dip) {
         vec2 fall = vec2(top.x * cosine - top.y * sine, top.y * cosine + top.x * sine);
-        outline.turn = arealight_turned_by(outline.turn, arealight_cone_crossing(cone, fall), way > 0.0);
+        arealight_outline_crossing(outline, arealight_cone_crossing(cone, fall), way > 0.0);
         end = last_above ? end : fall;
     }
     // What is left is more than half of the outline by its ends' turn. Where they meet it is none of it, or
@@ -191,7 +191,7 @@ float arealight_ellipse_both_horizons(vec3 center, vec3 axis_u, vec3 axis_v, vec
     ArealightRimArc arc = arealight_rim_arc(rim, mat3(1.0), finite);
     vec3 begin = arealight_cone_unit(arc.cone, arc.begin, horizon);
     vec3 end = arealight_cone_unit(arc.cone, arc.end, horizon);
-    ArealightOutline outline = arealight_outline_begin();
+    ArealightOutline outline = arealight_outline_begin(AREALIGHT_ANYWHERE);
     bool grows = arc.way > 0.0;
     arealight_outline_edge(outline, grows ? end : begin, grows ? begin : end);
     arealight_outline_rim(outline, arc, begin.z > 0.0, end.z > 0.0, 1.0);

@@ -3,7 +3,7 @@
 
 #include "arealight/form_factor/rim.glsl"
 #include "arealight/form_factor/tube_outline.glsl"
-#include "arealight/form_factor/tube_small.glsl"
+#include "arealight/form_factor/tube_line.glsl"
 
 // The form factor of a tube: a cylinder without or with flat caps, or a capsule. A tube shines outwards; from
 // inside it gives 0.
@@ -19,35 +19,30 @@
 // takes the tube's space into cosine space; `horizon` is the sine of the elevation below which an end of a
 // rim counts as on the horizon: arealight_horizon_width. For any bits the result is a finite number.
 //
-// Error: 2e-6 where the point is a tenth of the radius away or more. The difference form makes the error
-// relative where the ends are small (AREALIGHT_TUBE_SMALL): for a tube within a fifth of its distance it is
-// at most 1e-5 of what the whole tube sends from the zenith, out to any distance, however it is turned and
-// cut; for a longer one as thin as AREALIGHT_TUBE_THIN 1e-4 of that, unless it is seen along its axis.
+// Error: 2e-6 where the point is a tenth of the radius away or more; of a tube as thin as AREALIGHT_TUBE_THIN
+// at most 5e-4 of what the whole tube sends from the zenith, out to any distance, however it is turned and
+// cut.
 float arealight_tube_form_factor(ArealightTube tube, mat3 transform, float horizon) {
-    if (!tube.seen) {
-        return 0.0;
-    }
+    mat3 space = transform * arealight_tube_frame(tube);
     if (!tube.outside) {
         ArealightSilhouette disk = arealight_tube_disk(tube);
-        return arealight_ellipse_form_factor(transform * disk.center, transform * disk.axis_u, transform
-                                             * disk.axis_v, true);
+        return arealight_ellipse_form_factor(space * disk.center, space * disk.axis_u, space * disk.axis_v,
+                                             true);
     }
-    if (AREALIGHT_USES_DIFFERENCE) {
-        bool is_small;
-        float form_factor = arealight_small_tube(tube, transform, horizon, is_small);
-        if (is_small) {
-            return form_factor;
-        }
+    bool is_line;
+    float line = arealight_tube_line(tube, space, is_line);
+    if (is_line) {
+        return line;
     }
     // From the start's rim along one edge to the end's, and back. A loop: one rim after the other, each made
     // where it is used
-    ArealightOutline outline = arealight_outline_begin();
+    ArealightOutline outline = arealight_outline_begin(AREALIGHT_ANYWHERE);
     bool finite = true;
     vec3 first = vec3(0.0);
     vec3 last = vec3(0.0);
     for (int i = 0; i < 2; i++) {
         float way = i == 0 ? 1.0 : -1.0;
-        ArealightRimArc arc = arealight_rim_arc(arealight_tube_rim(tube, -way), transform, finite);
+        ArealightRimArc arc = arealight_rim_arc(arealight_tube_rim(tube, -way), space, finite);
         vec3 begin = arealight_cone_unit(arc.cone, arc.begin, horizon);
         vec3 end = arealight_cone_unit(arc.cone, arc.end, horizon);
         bool swapped = way * arc.way < 0.0;

@@ -101,9 +101,9 @@ vec3 arealight_rim_end(ArealightRim rim, float side) {
 // As arealight_tube_form_factor, clipped at the surface's horizon too: `normal` is the surface's, in the
 // space of the tube. Error: 3e-6. A thin tube is not taken for a line: its error is that of its outline.
 float arealight_tube_both_horizons(ArealightTube tube, vec3 normal, mat3 transform, float horizon) {
-    if (!tube.seen) {
-        return 0.0;
-    }
+    mat3 frame = arealight_tube_frame(tube);
+    transform = transform * frame;
+    normal = normal * frame;
     if (!tube.outside) {
         ArealightSilhouette disk = arealight_tube_disk(tube);
         vec3 heights = vec3(dot(normal, disk.center), dot(normal, disk.axis_u), dot(normal, disk.axis_v));
@@ -111,8 +111,8 @@ float arealight_tube_both_horizons(ArealightTube tube, vec3 normal, mat3 transfo
                                                * disk.axis_v,
                                                heights, true, horizon);
     }
-    ArealightDrawnOutline drawn = ArealightDrawnOutline(arealight_outline_begin(), true, vec3(0.0), vec3(0.0),
-                                                        false);
+    ArealightDrawnOutline drawn = ArealightDrawnOutline(arealight_outline_begin(AREALIGHT_ANYWHERE), true,
+                                                        vec3(0.0), vec3(0.0), false);
     // Along an edge to the start's rim and that rim, piece by piece; along the other edge to the end's, and
     // back
     for (int i = 0; i < 4; i++) {

@@ -46,14 +46,12 @@ float arealight_edge_solid_angle(vec3 from, vec3 to, vec3 e) {
 // The solid angle of what is seen of a tube, in [0, 2 pi]. Error: 1e-5 where the point is half a radius from
 // the rims or more, some 1e-2 of the part that is near where it is nearer than a twentieth.
 float arealight_tube_solid_angle(ArealightTube tube) {
-    if (!tube.seen) {
-        return 0.0;
-    }
     if (!tube.outside) {
         ArealightSilhouette disk = arealight_tube_disk(tube);
         return arealight_ellipse_solid_angle(disk.center, disk.axis_u, disk.axis_v);
     }
-    vec3 e = arealight_normalize_or(arealight_on_axis(tube, clamp(0.0, tube.start, tube.end)), vec3(0.0));
+    float nearest = clamp(0.0, tube.start, arealight_tube_end(tube));
+    vec3 e = arealight_normalize_or(arealight_on_axis(tube, nearest), vec3(0.0));
     ArealightRim start = arealight_tube_rim(tube, -1.0);
     ArealightRim end = arealight_tube_rim(tube, 1.0);
     vec3 start_middle = start.center + start.half_width.x * start.middle;

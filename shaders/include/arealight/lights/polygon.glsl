@@ -1,7 +1,6 @@
 #ifndef AREALIGHT_POLYGON_LIGHT_GLSL
 #define AREALIGHT_POLYGON_LIGHT_GLSL
 
-#include "arealight/form_factor/difference.glsl"
 #include "arealight/form_factor/outline.glsl"
 #include "arealight/lights/quad.glsl"
 #include "arealight/textures/footprint.glsl"
@@ -55,7 +54,7 @@ bool arealight_to_local(ArealightPoint point, ArealightPolygonLight light, out A
 vec3 arealight_outline_in_space(mat3 space, vec3 center, mat3 to_frame, uint first, uint end, float front) {
     vec3 in_space = space * center;
     mat3 to_space = space * to_frame;
-    ArealightOutline outline = arealight_outline_begin();
+    ArealightOutline outline = arealight_outline_begin(in_space);
     vec3 from = arealight_unit(in_space + to_space * arealight_bridge_vertex(end - 1u));
     float heights = 0.0;
     for (uint index = first; index < end; index++) {
@@ -72,8 +71,8 @@ vec3 arealight_outline_in_space(mat3 space, vec3 center, mat3 to_frame, uint fir
 // The same, clipped at the surface's horizon first.
 vec3 arealight_outline_above_surface(mat3 space, vec3 center, mat3 to_frame, uint first, uint end,
                                      float front) {
-    ArealightClippedOutline clipped = arealight_clipped_begin(center + to_frame
-                                                              * arealight_bridge_vertex(end - 1u));
+    ArealightClippedOutline clipped = arealight_clipped_begin(
+        center + to_frame * arealight_bridge_vertex(end - 1u), space * center);
     float heights = 0.0;
     for (uint index = first; index < end; index++) {
         vec3 vertex = center + to_frame * arealight_bridge_vertex(index);
@@ -83,51 +82,10 @@ vec3 arealight_outline_above_surface(mat3 space, vec3 center, mat3 to_frame, uin
     return arealight_is_finite(heights) ? arealight_clipped_vector(clipped, front) : vec3(0.0);
 }
 
-// The same as the two above in the difference form, with relative precision for small outlines.
-vec3 arealight_outline_by_difference(mat3 space, vec3 center, mat3 to_frame, uint first, uint end,
-                                     float front) {
-    mat3 to_space = space * to_frame;
-    float extent = 0.0;
-    for (uint index = first; index < end; index++) {
-        vec3 offset = to_space * arealight_bridge_vertex(index);
-        extent = max(extent, dot(offset, offset));
-    }
-    ArealightAnchor anchor = arealight_anchor(space * center, sqrt(extent), arealight_horizon_width(space),
-                                              front);
-    ArealightDifferenceOutline outline = arealight_difference_begin();
-    // Begins at the last vertex. Each has its height over the surface's horizon from one place in the code,
-    // and keeps it for both of its edges: computed twice, a compiler may round it to either side
-    vec3 previous = vec3(0.0);
-    float previous_height = 0.0;
-    for (uint step = 0u; step <= end - first; step++) {
-        vec3 offset = to_frame * arealight_bridge_vertex(step == 0u ? end - 1u : first + step - 1u);
-        float height = center.z + offset.z;
-        bool is_above = !AREALIGHT_CLIPS_AT_SURFACE || height > 0.0;
-        if (step > 0u) {
-            if (AREALIGHT_CLIPS_AT_SURFACE && is_above != (previous_height > 0.0)) {
-                vec3 cut = (offset * previous_height - previous * height) / (previous_height - height);
-                // On the horizon exactly, so that Lambert's lobe does not clip it once more by the last bit
-                cut.z = -center.z;
-                arealight_difference_to(outline, anchor, arealight_vertex(anchor, space * cut));
-            }
-            if (is_above) {
-                arealight_difference_to(outline, anchor, arealight_vertex(anchor, space * offset));
-            }
-            outline.squares += dot(offset, offset);
-        }
-        previous = offset;
-        previous_height = height;
-    }
-    return arealight_difference_vector(outline, anchor);
-}
-
 // The vector form factor of an outline that is seen from its front (1) or its back (-1), as the options have
 // it.
 vec3 arealight_outline_form_factor(mat3 space, vec3 center, mat3 to_frame, uint first, uint end,
                                    float front) {
-    if (AREALIGHT_USES_DIFFERENCE) {
-        return arealight_outline_by_difference(space, center, to_frame, first, end, front);
-    }
     if (AREALIGHT_CLIPS_AT_SURFACE) {
         return arealight_outline_above_surface(space, center, to_frame, first, end, front);
     }

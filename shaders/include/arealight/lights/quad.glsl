@@ -1,7 +1,6 @@
 #ifndef AREALIGHT_QUAD_LIGHT_GLSL
 #define AREALIGHT_QUAD_LIGHT_GLSL
 
-#include "arealight/form_factor/difference.glsl"
 #include "arealight/form_factor/quad.glsl"
 #include "arealight/options.glsl"
 #if AREALIGHT_SOLID_ANGLES
@@ -21,11 +20,10 @@ struct ArealightQuadLight {
 
 // A quad in the shading frame, cut at the surface's horizon with AREALIGHT_SURFACE_HORIZON.
 struct ArealightLocalQuad {
-    ArealightQuad quad;     // from the shading point; with AREALIGHT_DIFFERENCE from the center
+    ArealightQuad quad;     // from the shading point
     // What the cut leaves beside a quad where three vertices are above, its last vertex twice
     ArealightQuad triangle;
     bool has_triangle;
-    vec3 center;            // from the shading point
     float side;             // arealight_lit_side
 };
 
@@ -44,30 +42,16 @@ bool arealight_is_finite(ArealightQuad quad) {
     return max(largest.x, max(largest.y, largest.z)) < 0x7f800000u;
 }
 
-ArealightQuad arealight_moved(ArealightQuad quad, vec3 by) {
-    return ArealightQuad(quad.a + by, quad.b + by, quad.c + by, quad.d + by);
-}
-
-// Cuts a quad at the surface's horizon with AREALIGHT_SURFACE_HORIZON, and takes its vertices from its center
-// again with AREALIGHT_DIFFERENCE. False where nothing is left. `quad`: the same in the world.
-bool arealight_cut_local(inout ArealightLocalQuad local, mat3 to_frame, ArealightQuad quad) {
-    bool is_cut = false;
-    if (AREALIGHT_CLIPS_AT_SURFACE) {
-        if (arealight_highest(local.quad) <= 0.0) {
-            return false;
-        }
-        is_cut = arealight_lowest(local.quad) < 0.0;
-        if (is_cut) {
-            ArealightCutQuad cut = arealight_cut_at_horizon(local.quad);
-            local.quad = ArealightQuad(cut.entry, cut.a, cut.b, cut.c);
-            local.triangle = ArealightQuad(cut.entry, cut.c, cut.exit, cut.exit);
-            local.has_triangle = cut.has_c;
-        }
+// Cuts a quad at the surface's horizon. False where nothing is left.
+bool arealight_cut_local(inout ArealightLocalQuad local) {
+    if (arealight_highest(local.quad) <= 0.0) {
+        return false;
     }
-    if (AREALIGHT_USES_DIFFERENCE) {
-        local.quad = is_cut ? arealight_moved(local.quad, -local.center)
-            : arealight_quad_in_frame(to_frame, vec3(0.0), quad);
-        local.triangle = arealight_moved(local.triangle, -local.center);
+    if (arealight_lowest(local.quad) < 0.0) {
+        ArealightCutQuad cut = arealight_cut_at_horizon(local.quad);
+        local.quad = ArealightQuad(cut.entry, cut.a, cut.b, cut.c);
+        local.triangle = ArealightQuad(cut.entry, cut.c, cut.exit, cut.exit);
+        local.has_triangle = cut.has_c;
     }
     return true;
 }
@@ -78,31 +62,20 @@ bool arealight_to_local(ArealightPoint point, ArealightQuadLight light, out Area
                                     arealight_position_error(point.position));
     bool lit = local.side != 0.0 && arealight_is_finite(light.quad);
     if (lit) {
-        local.center = point.to_frame * offset;
-        local.quad = arealight_quad_in_frame(point.to_frame, local.center, light.quad);
+        local.quad = arealight_quad_in_frame(point.to_frame, point.to_frame * offset, light.quad);
         local.has_triangle = false;
-        if (AREALIGHT_CLIPS_AT_SURFACE || AREALIGHT_USES_DIFFERENCE) {
-            lit = arealight_cut_local(local, point.to_frame, light.quad);
+        if (AREALIGHT_CLIPS_AT_SURFACE) {
+            lit = arealight_cut_local(local);
         }
     }
     return lit;
 }
 
-// The vector form factor in a space with AREALIGHT_DIFFERENCE, of a quad whose vertices are from `center`.
-vec3 arealight_far_quad_vector(mat3 space, vec3 center, ArealightQuad quad, float front) {
-    return arealight_difference_quad(space * center, arealight_transformed(space, quad),
-                                     arealight_horizon_width(space), front);
-}
-
 vec3 arealight_vector_form_factor(mat3 space, ArealightLocalQuad local) {
     float front = AREALIGHT_HAS_TWO_SIDED ? local.side : 1.0;
-    vec3 vector = AREALIGHT_USES_DIFFERENCE
-        ? arealight_far_quad_vector(space, local.center, local.quad, front)
-        : arealight_quad_vector(arealight_transformed(space, local.quad), front);
+    vec3 vector = arealight_quad_vector(arealight_transformed(space, local.quad), front);
     if (AREALIGHT_CLIPS_AT_SURFACE && local.has_triangle) {
-        vector += AREALIGHT_USES_DIFFERENCE
-            ? arealight_far_quad_vector(space, local.center, local.triangle, front)
-            : arealight_quad_vector(arealight_transformed(space, local.triangle), front);
+        vector += arealight_quad_vector(arealight_transformed(space, local.triangle), front);
     }
     return front * vector;
 }
@@ -112,10 +85,9 @@ bool arealight_has_facet_form_factor(ArealightLocalQuad local) {
 }
 
 vec3 arealight_facet_form_factor(ArealightFacets facets, ArealightLocalQuad local) {
-    vec3 from = AREALIGHT_USES_DIFFERENCE ? local.center : vec3(0.0);
-    vec3 vector = arealight_facet_quad(facets, arealight_moved(local.quad, from));
+    vec3 vector = arealight_facet_quad(facets, local.quad);
     if (AREALIGHT_CLIPS_AT_SURFACE && local.has_triangle) {
-        vector += arealight_facet_quad(facets, arealight_moved(local.triangle, from));
+        vector += arealight_facet_quad(facets, local.triangle);
     }
     return AREALIGHT_HAS_TWO_SIDED ? local.side * vector : vector;
 }
@@ -126,8 +98,7 @@ vec3 arealight_image_average(mat3 space, ArealightLocalQuad local, vec3 vector) 
 
 #if AREALIGHT_SOLID_ANGLES
 float arealight_solid_angle(ArealightLocalQuad local) {
-    return arealight_quad_solid_angle(arealight_moved(local.quad, AREALIGHT_USES_DIFFERENCE ? local.center
-                                                                                            : vec3(0.0)));
+    return arealight_quad_solid_angle(local.quad);
 }
 #endif
 

@@ -156,7 +156,7 @@ void arealight_part_vertex(inout ArealightPartOutline part, mat3 space, vec3 ver
     } else {
         part.first = vertex;
         part.begun = true;
-        part.clipped = arealight_clipped_begin(vertex);
+        part.clipped = arealight_clipped_begin(vertex, AREALIGHT_ANYWHERE);
     }
 }
 
@@ -193,8 +193,8 @@ vec3 arealight_level_vector(mat3 space, ArealightLocalShaped local, float square
         return vec3(0.0);
     }
     start = has_rim ? start : 0u;
-    ArealightPartOutline outline = ArealightPartOutline(arealight_clipped_begin(vec3(0.0)), vec3(0.0), false,
-                                                        arealight_opening_walk());
+    ArealightPartOutline outline = ArealightPartOutline(
+        arealight_clipped_begin(vec3(0.0), AREALIGHT_ANYWHERE), vec3(0.0), false, arealight_opening_walk());
     bool is_first = true;
     vec3 first = vec3(0.0);
     vec3 left = vec3(0.0); // where the outline left the disk

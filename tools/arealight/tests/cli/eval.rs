@@ -13,10 +13,10 @@ fn eval(arguments: &[&str]) -> Output {
         .expect("the command runs")
 }
 
-/// As [`eval`], at the most precise level, but for specular lobes that are said.
+/// As [`eval`], by two specular lobes where it is not said.
 fn precisely(arguments: &[&str]) -> Output {
     let lobes = if arguments.contains(&"--specular-lobes") { &[][..] } else { &["--specular-lobes", "two"] };
-    eval(&[arguments, lobes, &["--form-factor", "difference"]].concat())
+    eval(&[arguments, lobes].concat())
 }
 
 fn temporary(file: &str) -> PathBuf {

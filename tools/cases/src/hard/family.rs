@@ -124,13 +124,12 @@ pub static FAMILIES: &[Family] = &[
     Family::new("far-crossing", "1 to 1e8 times as far as large, on the horizon", far::crossing),
     Family::new("far-grazing", "4 to 1e8 times as far as large, at elevations of 1e-7 to 1e-2", far::grazing),
     Family::new("far-edge-on", "4 to 1e8 times as far as large, seen along its plane", far::edge_on),
-    Family::new("switch", "as large as where the difference form begins, or nearly", far::switch),
     Family::new(
         "low-alpha",
         "through the table's lobes of alpha 1e-4 to 1e-2, about the mirror direction",
         lobe::low,
     ),
-    Family::new("low-alpha-far", "the same, small: the difference form's lobe", lobe::low_far),
+    Family::new("low-alpha-far", "the same, small", lobe::low_far),
     Family::new("grazing", "through the table's lobes at views of 88 to 90 degrees", lobe::grazing),
     Family::new(
         "degenerate",

@@ -7,8 +7,7 @@ use serde::Serialize;
 /// nearby: four units in float32's last place.
 pub const MOVE: f64 = 4.0 / (1 << 24) as f64;
 
-/// The largest offset from the anchor, as a part of the farthest vertex's distance, below which the
-/// difference form holds its relative promise: its own switch stands farther out, at a half.
+/// The largest offset from the anchor, as a part of the farthest vertex's distance, of a small light.
 pub const SMALL: f64 = 0.2;
 
 /// What a way to compute form factors promises. All promise a finite number in [0, 1] for any bits, and 0
@@ -22,19 +21,16 @@ pub struct Promises {
     /// What is added to it, over the distance to the polygon as a part of the farthest vertex's distance.
     pub contact: f64,
     /// For small lights, the largest error as a part of area / (pi distance²), what the light would send if
-    /// it stood upright at the zenith.
+    /// it stood upright at the zenith, for each time that it is as far as large.
     pub small_light: f64,
-    /// What is added to it for each time that the light is as far as large; it is promised only of those
-    /// wholly above the horizon, then.
-    pub small_light_growth: f64,
+    /// The same of those that cross the horizon, or touch it.
+    pub small_light_crossing: f64,
 }
 
 impl Promises {
-    /// [`FormFactor::Exact`](arealight::FormFactor::Exact).
-    pub const EXACT: Self =
-        Self { backward: 6e-7, forward: 1e-6, contact: 1e-7, small_light: 0.0, small_light_growth: 8e-7 };
-    /// [`FormFactor::Difference`](arealight::FormFactor::Difference).
-    pub const DIFFERENCE: Self = Self { small_light: 1e-6, small_light_growth: 0.0, ..Self::EXACT };
+    /// The library's.
+    pub const OURS: Self =
+        Self { backward: 6e-7, forward: 1e-6, contact: 1e-7, small_light: 8e-7, small_light_crossing: 4e-6 };
 
     /// The largest error; infinite in contact.
     pub fn forward_bound(&self, reference: &Reference) -> f64 {
@@ -43,9 +39,8 @@ impl Promises {
 
     /// The largest error of a small light, where there is a promise for this one.
     pub fn small_light_bound(&self, reference: &Reference) -> Option<f64> {
-        let unit = reference.small_light_unit?;
-        let grown = self.small_light_growth * reference.extents_away;
-        (reference.is_above || grown == 0.0).then_some((self.small_light + grown) * unit)
+        let growth = if reference.is_above { self.small_light } else { self.small_light_crossing };
+        reference.small_light_unit.map(|unit| growth * reference.extents_away * unit)
     }
 }
 

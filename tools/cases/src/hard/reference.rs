@@ -22,7 +22,7 @@ pub struct Reference {
     pub distance: f64,
     /// The polygon's area.
     pub area: f64,
-    /// area / (pi distance²) of a light that is small for the difference form, see [`SMALL`]. Of a sliver,
+    /// area / (pi distance²) of a light that is small, see [`SMALL`]. Of a sliver,
     /// the area that four units in the last place of its offsets are a millionth of: no better is its area
     /// known.
     pub small_light_unit: Option<f64>,

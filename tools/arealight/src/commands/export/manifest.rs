@@ -137,9 +137,8 @@ fn binding(binding: &Binding) -> Value {
 }
 
 fn constant_name(id: u32) -> &'static str {
-    const NAMES: [(u32, &str); 27] = [
+    const NAMES: [(u32, &str); 26] = [
         (constant::EFFECTS, "EFFECTS"),
-        (constant::FORM_FACTOR, "FORM_FACTOR"),
         (constant::POSITION_SOURCE, "POSITION_SOURCE"),
         (constant::OUTPUT, "OUTPUT"),
         (constant::HORIZON, "HORIZON"),

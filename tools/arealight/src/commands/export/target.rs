@@ -148,7 +148,7 @@ mod tests {
         ("diffuse,glossy", 79_000),
         ("diffuse,glossy,polygon,two_sided", 103_000),
         ("diffuse,glossy,polygon,mesh,textured", 144_000),
-        ("diffuse,glossy,ellipse,sphere,tube", 205_000),
+        ("diffuse,glossy,ellipse,sphere,tube", 235_000),
         ("diffuse,glossy,ellipse,textured_ellipse", 149_000),
         ("diffuse,glossy,coat,coat_normal", 86_000),
         ("diffuse,glossy,coupled,coupled_by_albedo,multiple_scattering", 82_000),

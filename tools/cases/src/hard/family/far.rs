@@ -54,11 +54,3 @@ pub fn edge_on(stream: &mut Stream, _: &LightTable) -> HardCase {
     let normal = (across + way * tilt).normalize_or(across);
     anchored(stream, way * distance, normal)
 }
-
-pub fn switch(stream: &mut Stream, _: &LightTable) -> HardCase {
-    // The promise begins where the largest offset is a fifth of the distance, the form at a half
-    let way = if stream.one_in(4) { level(stream) } else { upward(stream) };
-    let normal = stream.direction();
-    let distance = stream.between(3.0, 8.0);
-    anchored(stream, way * distance, normal)
-}
