@@ -19,7 +19,7 @@ struct ArealightOutline {
     vec2 turn; // how far the outline has to turn along the horizon to be closed, as a complex number
 };
 
-// Where an outline may begin whose error need not be as small as it.
+// For outlines whose error need not be as small as they are: arealight_outline_begin.
 const vec3 AREALIGHT_ANYWHERE = vec3(1.0, 0.0, 0.0);
 
 // Begins an outline about a direction, of any length. Where that is amid a small outline, crossings keep

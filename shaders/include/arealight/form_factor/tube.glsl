@@ -16,8 +16,9 @@
 //     float f = arealight_tube_form_factor(tube, to_cosine, horizon); for each lobe
 
 // The form factor of a tube, clipped at the horizon z = 0 of a lobe's cosine space: in [0, 1]. `transform`
-// takes the tube's space into cosine space; `horizon` is the sine of the elevation below which an end of a
-// rim counts as on the horizon: arealight_horizon_width. For any bits the result is a finite number.
+// takes the space of arealight_tube's arguments into cosine space; `horizon` is the sine of the elevation
+// below which an end of a rim counts as on the horizon: arealight_horizon_width. For any bits the result is a
+// finite number.
 //
 // Error: 2e-6 where the point is a tenth of the radius away or more; of a tube as thin as AREALIGHT_TUBE_THIN
 // at most 5e-4 of what the whole tube sends from the zenith, out to any distance, however it is turned and
