@@ -26,7 +26,7 @@ of Heitz et al. 2016. The bits of each result are judged against a reference of 
 3. *Forward*: error at most 1e-6 + 1e-7 / rho, rho being the distance to the polygon over that to its \
 farthest vertex.
 4. *Small light*, of one at n times its extent: error at most 8e-7 n of area / (pi distance^2); of one that \
-crosses the horizon 2e-5 n.
+crosses the horizon 1e-5 n.
 
 The yardsticks are held to the same; `-` is a family whose polygons they don't take.
 

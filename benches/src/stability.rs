@@ -6,7 +6,6 @@ use arealight::LightTable;
 use arealight_cases::hard::HardCase;
 use arealight_cases::hard::family::{FAMILIES, Family, Scope};
 use arealight_cases::hard::judge::{Finding, Judged, Tally};
-use arealight_cases::hard::promise::Promises;
 use arealight_engine::EngineError;
 use arealight_engine::host::Host;
 use rayon::prelude::*;
@@ -135,7 +134,7 @@ fn judge(
     let judged: Vec<Judged> = cases.par_iter().map(|case| Judged::new(family, case)).collect();
     for ((method, results), tally) in methods.iter().zip(results).zip(tallies) {
         let judge = |((case, judged), bits): ((&HardCase, &Judged), &u32)| {
-            method.takes(case).then(|| judged.judge(*bits, &Promises::OURS))
+            method.takes(case).then(|| judged.judge(*bits))
         };
         let findings: Vec<Option<Finding>> = cases.par_iter().zip(&judged).zip(results).map(judge).collect();
         for (((index, bits), judged), finding) in (first..).zip(results).zip(&judged).zip(&findings) {

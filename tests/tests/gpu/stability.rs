@@ -8,7 +8,7 @@ use arealight_benches::stability::{Options, Stability, run};
 use arealight_cases::hard::HardCase;
 use arealight_cases::hard::family::{FAMILIES, Family};
 use arealight_cases::hard::judge::{Judged, Tally};
-use arealight_cases::hard::promise::{Promise, Promises};
+use arealight_cases::hard::promise::Promise;
 use arealight_engine::host::testing::device_or_skip;
 use arealight_tests::rounds_as_oracle;
 use std::collections::BTreeSet;
@@ -105,7 +105,7 @@ fn spoiled_results_are_found_out() {
         let mut tally = Tally::default();
         for ((index, case), bits) in (0..).zip(&cases).zip(&results) {
             let (judged, bits) = (Judged::new(family, case), spoil(*bits));
-            tally.add(index, bits, None, &judged.judge(bits, &Promises::OURS));
+            tally.add(index, bits, None, &judged.judge(bits));
         }
         (tally.shortfalls.keys().copied().collect::<Vec<_>>(), tally.not_finite)
     };
@@ -134,7 +134,7 @@ fn an_edge_through_the_point_is_closed_on_its_own_side() {
         let kernel = FormFactorKernel::new(&host, &[method]).unwrap();
         let bits = kernel.run(std::slice::from_ref(&case)).unwrap()[0][0];
         let judged = Judged::new(family, &case);
-        let ratio = |bits| judged.judge(bits, &Promises::OURS).ratios[1].unwrap().1;
+        let ratio = |bits| judged.judge(bits).ratios[1].unwrap().1;
         assert!(ratio(bits) <= 1.0, "{name}: {}", f32::from_bits(bits));
         // The twin: closed on the other side. Other roundings may put the edge so near to the point that both
         // are of polygons nearby

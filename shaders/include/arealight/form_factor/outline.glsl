@@ -14,9 +14,9 @@
 // Promises: as form_factor/quad.glsl states; tested for up to 64 vertices, the rounding of a longer sum grows
 // with its length (1024: 1.4e-6).
 struct ArealightOutline {
-    vec3 arcs; // the sum so far
+    vec3 arcs;  // the sum so far
     vec3 about; // the direction from which crossings are taken, of any length
-    vec2 turn; // how far the outline has to turn along the horizon to be closed, as a complex number
+    vec2 turn;  // how far the outline has to turn along the horizon to be closed, as a complex number
 };
 
 // For outlines whose error need not be as small as they are: arealight_outline_begin.

@@ -16,7 +16,7 @@
 //   3. Its error is at most 1e-6 + 1e-7 / rho, rho being the distance to the polygon over that to its
 //      farthest vertex.
 //   4. Of a light of area A at n >= 5 times its extent, d, it is at most 8e-7 n A / (pi d^2); of one that
-//      crosses the horizon 2e-5 n A / (pi d^2).
+//      crosses the horizon 1e-5 n A / (pi d^2).
 //
 // They assume square roots and divisions that round to the last place or nearly: on a device that takes all
 // that Vulkan allows, 2 to 4.5 units, count on as many times the error. `arealight bench stability` measures

@@ -63,8 +63,8 @@ impl Judged {
         self.truth.as_ref().map(|truth| &truth.reference)
     }
 
-    /// Holds the bits of a result against `promises`.
-    pub fn judge(&self, bits: u32, promises: &Promises) -> Finding {
+    /// Holds the bits of a result against [`Promises::OURS`].
+    pub fn judge(&self, bits: u32) -> Finding {
         let value = f64::from(f32::from_bits(bits));
         let out_of_range = bits > ONE;
         let mut finding = Finding { not_finite: !value.is_finite(), out_of_range, ..Finding::default() };
@@ -80,7 +80,7 @@ impl Judged {
         let errors = other_closings.iter().chain([&reference.form_factor]).map(|f| (value - f).abs());
         let error = errors.fold(f64::INFINITY, f64::min);
         // The given polygon is one of those nearby: its value is searched no further where it is close enough
-        let bound = promises.backward;
+        let bound = Promises::OURS.backward;
         // Nor where it is hopelessly far off: away from contact, values nearby differ by little more than the
         // moves
         let reach = 100.0 * nearby.vertex_count() as f64 * MOVE / reference.rho;
@@ -91,8 +91,9 @@ impl Judged {
         finding.small_light_error = reference.small_light_unit.map(|unit| ratio(error, unit));
         finding.ratios[1] = Some((Promise::Backward, ratio(backward, bound)));
         // One of the two bounds of the error is the tighter one
-        let forward = (Promise::Forward, ratio(error, promises.forward_bound(reference)));
-        let small = promises.small_light_bound(reference).map(|b| (Promise::SmallLight, ratio(error, b)));
+        let forward = (Promise::Forward, ratio(error, Promises::OURS.forward_bound(reference)));
+        let small =
+            Promises::OURS.small_light_bound(reference).map(|b| (Promise::SmallLight, ratio(error, b)));
         finding.ratios[2] = Some(small.filter(|small| small.1 > forward.1).unwrap_or(forward));
         finding
     }

@@ -30,7 +30,7 @@ pub struct Promises {
 impl Promises {
     /// The library's.
     pub const OURS: Self =
-        Self { backward: 6e-7, forward: 1e-6, contact: 1e-7, small_light: 8e-7, small_light_crossing: 4e-6 };
+        Self { backward: 6e-7, forward: 1e-6, contact: 1e-7, small_light: 8e-7, small_light_crossing: 1e-5 };
 
     /// The largest error; infinite in contact.
     pub fn forward_bound(&self, reference: &Reference) -> f64 {

@@ -2,7 +2,7 @@ use super::double::{Double, Number};
 use super::edges::sum_edges;
 use super::family::{FAMILIES, Family, Scope};
 use super::judge::{Judged, Tally};
-use super::promise::{Promise, Promises};
+use super::promise::Promise;
 use super::reference::Reference;
 use super::*;
 use arealight_oracle::polygon;
@@ -135,7 +135,7 @@ fn a_result_is_judged_by_its_bits_and_its_error() {
     let exact = judged.reference().unwrap().form_factor;
     let broken = |bits: u32| {
         let mut tally = Tally::default();
-        tally.add(0, bits, Some(exact), &judged.judge(bits, &Promises::OURS));
+        tally.add(0, bits, Some(exact), &judged.judge(bits));
         tally.shortfalls.keys().copied().collect::<Vec<_>>()
     };
     let near = (exact as f32).to_bits();
@@ -158,7 +158,7 @@ fn what_is_not_finite_must_be_zero() {
     for case in cases("not-finite", 50) {
         assert!(!case.is_finite());
         let judged = Judged::new(family, &case);
-        let ratio = |value: f32| judged.judge(value.to_bits(), &Promises::OURS).ratios[0].unwrap();
+        let ratio = |value: f32| judged.judge(value.to_bits()).ratios[0].unwrap();
         assert_eq!(ratio(0.0), (Promise::Zero, 0.0));
         assert_eq!(ratio(1e-30), (Promise::Zero, f64::INFINITY));
         assert_eq!(ratio(f32::NAN), (Promise::Zero, f64::INFINITY));
@@ -177,7 +177,7 @@ fn a_small_light_is_held_to_its_own_size() {
     });
     let judged = Judged::new(family, &family.case(index.unwrap(), 0, &table));
     // Nothing at all is within every absolute bound, and wrong
-    let finding = judged.judge(0, &Promises::OURS);
+    let finding = judged.judge(0);
     assert!(finding.ratios[..2].iter().flatten().all(|(_, ratio)| *ratio < 1.0), "{finding:?}");
     let small = finding.ratios[2];
     assert!(matches!(small, Some((Promise::SmallLight, ratio)) if ratio > 1.0), "{finding:?}");
