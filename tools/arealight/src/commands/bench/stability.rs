@@ -89,7 +89,8 @@ const SHAPE_PROMISES: &str = "Each result is held against float64, by its bits: 
 backward error (the distance to the values of shapes whose numbers differ by 4 x 2^-24 of their lengths) of \
 at most 1e-6, of disks 6e-7; of far lights an error of at most 1e-5, of disks 5e-6 and of tubes whose radius \
 is a 64th of their distance or less 5e-4, of what they would send from the zenith. Beside the disks is the \
-published disk, its discriminant kept from being negative, on the same device: how many of its results are not finite, and the largest error of those that are.";
+published disk, its discriminant kept from being negative, on the same device: how many of its results are \
+not finite, and the largest error of those that are.";
 
 fn run_shapes(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let host = arguments.ends.host()?;
