@@ -9,7 +9,7 @@ use arealight_engine::host::{Host, Usage};
 use arealight_engine::{Engine, EngineError, Reference};
 use arealight_scene::{Scene, SceneMaterial};
 use arealight_vk::TableFormat;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
@@ -115,8 +115,8 @@ fn render(
         .map_err(EngineError::from)?;
     let material = |position: &[f32; 4]| {
         let triangle = buffers.triangles.get((position[3] as usize).checked_sub(1)?)?;
-        (triangle.flags & arealight_tool_kernels::gpu::GpuTriangle::LAMP == 0)
-            .then_some(triangle.material as usize)
+        let material = triangle.material as usize;
+        (scene.materials[material].emission == Vec3::ZERO).then_some(material)
     };
     let materials: Vec<Option<usize>> = positions.iter().map(material).collect();
     // Ours, each pixel by a pass of what its material needs: one of everything would have one specular lobe

@@ -214,7 +214,7 @@ fn run_scene(
     Ok(SceneResult {
         name: scene.name.clone(),
         lights: scene.lights.len(),
-        blockers: scene.triangles.iter().filter(|triangle| !triangle.lamp).count(),
+        blockers: scene.triangles.len(),
         samples,
         penumbra: truth.mean.penumbra(),
         noise: truth.noise,

@@ -10,6 +10,7 @@
 #include "arealight/form_factor/tube_outline.glsl"
 #include "arealight/lights/face_cluster.glsl"
 #include "arealight/shadows/outline_sampling.glsl"
+#include "arealight/shadows/ray_origin.glsl"
 
 struct PickedLight {
     ArealightShadowOutline outline; // of a mesh each face's in turn
@@ -31,35 +32,50 @@ struct PickedLight {
     float error; // arealight_position_error
 };
 
-// The silhouette of a sphere, as a disk. A point inside of it has none.
-ArealightShadowOutline sphere_outline(vec3 center, float radius) {
-    float square = max(dot(center, center), 1e-37);
-    float part = max(1.0 - radius * radius / square, 0.0);
-    vec3 axis_u, axis_v;
-    arealight_perpendiculars(center * inversesqrt(square), axis_u, axis_v);
-    float rim = radius * sqrt(part);
-    return arealight_ellipse_outline(part * center, rim * axis_u, rim * axis_v);
+// What of the way to a round light at `far` is before its own geometry, which is as wide as that; least where
+// that is at the point.
+float part_before(float wide, float far) {
+    return max(1.0 - wide / far, 1e-3);
 }
 
-// The silhouette of a tube: between its two tangent planes, and as long as it is; round ends as a straight
-// edge of the same area. From within an end's disk extended along the axis: that disk.
+// The silhouette of a sphere, as a disk before it. A point inside of it has none.
+ArealightShadowOutline sphere_outline(vec3 center, float radius) {
+    float square = max(dot(center, center), 1e-37);
+    float inverse = inversesqrt(square);
+    float part = 1.0 - radius * radius / square;
+    float before = part_before(AREALIGHT_ROUND_MARGIN * radius * inverse, 1.0);
+    vec3 axis_u, axis_v;
+    arealight_perpendiculars(center * inverse, axis_u, axis_v);
+    float rim = part > 0.0 ? radius * before * inversesqrt(part) : 0.0;
+    return arealight_ellipse_outline(before * center, rim * axis_u, rim * axis_v);
+}
+
+// The silhouette of a tube, before it: between its two tangent planes, and as long as it is; round ends as a
+// straight edge of the same area. From within an end's disk extended along the axis: that disk.
 ArealightShadowOutline tube_outline(vec3 center, vec3 half_axis, float radius, int ends) {
     float half_length = max(length(half_axis), 1e-37);
     vec3 axis = half_axis / half_length;
     float along = dot(center, axis);
     vec3 across = center - along * axis;
     float distance = length(across);
+    float wide = AREALIGHT_ROUND_MARGIN * radius;
+    float beyond = max(abs(along) - half_length, 1e-37); // an end
     if (distance <= radius) {
         vec3 axis_u, axis_v;
         arealight_perpendiculars(axis, axis_u, axis_v);
         vec3 end = center + (along > 0.0 ? -half_axis : half_axis);
-        return arealight_ellipse_outline(end, radius * axis_u, radius * axis_v);
+        float before = part_before(wide, beyond);
+        return arealight_ellipse_outline(before * end, before * radius * axis_u, before * radius * axis_v);
     }
     vec3 toward = across / distance;
     float sine = radius / distance;
     float reach = half_length + (ends == AREALIGHT_TUBE_ROUND ? 0.78539816 * radius : 0.0);
-    vec3 side = radius * sqrt(1.0 - sine * sine) * cross(axis, toward);
-    return arealight_rectangle_outline(center - radius * sine * toward, reach * axis, side);
+    // Before all of the endless tube, or before its nearer end, if that is farther
+    float seen = 1.0 - sine * sine;
+    float before = max(part_before(wide, distance) / seen, (beyond - wide) / (abs(along) + reach));
+    vec3 side = radius * sqrt(seen) * cross(axis, toward);
+    return arealight_rectangle_outline(before * (center - radius * sine * toward), before * reach * axis,
+                                       before * side);
 }
 
 // Finds the flat end of a tube that a point sees beside its side. Error: where the two meet, the half of the

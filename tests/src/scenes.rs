@@ -34,7 +34,6 @@ pub fn scene_of(triangles: &[[DVec3; 3]], material: SceneMaterial) -> Scene {
             tangents: [Vec4::ZERO; 3],
             colors: [Triangle::WHITE; 3],
             material: 0,
-            lamp: false,
             groups: 0,
         }
     };

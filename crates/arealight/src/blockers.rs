@@ -34,6 +34,10 @@ pub const MAX_BLOCKERS: usize = 1 << 26;
 /// The largest coordinate of a vertex: squared sizes of boxes stay far from infinity.
 pub const MAX_COORDINATE: f32 = 1e16;
 
+/// How many radii of a sphere or a tube its own triangles may be out without hiding its light: rays to it end
+/// there. What is drawn of facets is not round.
+pub const ROUND_MARGIN: f64 = 1.125;
+
 /// Why triangles are refused as blockers.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]

@@ -55,6 +55,7 @@ const SHADOW_PICKS_GLSL: &str = include_str!("../../../shaders/kernels/shadow_pi
 const CAMERA_GLSL: &str = include_str!("../../../shaders/kernels/camera.glsl");
 const VIEW_GLSL: &str = include_str!("../../../shaders/kernels/view.glsl");
 const POSITION_GLSL: &str = include_str!("../../../shaders/kernels/position.glsl");
+const RAY_ORIGIN_GLSL: &str = include_str!("../../../shaders/include/arealight/shadows/ray_origin.glsl");
 const TILES_GLSL: &str = include_str!("../../../shaders/kernels/tiles.glsl");
 
 #[test]
@@ -104,7 +105,8 @@ fn flags_have_the_same_bits_in_glsl() {
     assert_constants(LIGHT_RECORDS_GLSL, "NO_LIGHT_", &[("TEXTURE", GpuLight::NO_TEXTURE.into())]);
     assert_constants(FOOTPRINT_GLSL, "AREALIGHT_NO_", &[("IMAGE", GpuLight::NO_TEXTURE.into())]);
     assert_constants(LIGHT_RECORDS_GLSL, "SHAPE_", &of!(gpu::GpuShape: DISK SPHERE TUBE TWO_SIDED));
-    assert_constants(SCENE_GLSL, "TRIANGLE_", &of!(GpuTriangle: LAMP TANGENTS MIRRORED COLORS GROUPS_SHIFT));
+    assert_constants(RAY_ORIGIN_GLSL, "AREALIGHT_ROUND_", &[("MARGIN", arealight::blockers::ROUND_MARGIN)]);
+    assert_constants(SCENE_GLSL, "TRIANGLE_", &of!(GpuTriangle: TANGENTS MIRRORED COLORS GROUPS_SHIFT));
     assert_constants(SCENE_GLSL, "MATERIAL_", &of!(GpuMaterial: DOUBLE_SIDED ALPHA_MASK ALPHA_BLEND UNLIT));
     assert_constants(SCENE_GLSL, "NO_TEXTURE", &[("", GpuMaterial::NO_TEXTURE.into())]);
     let texture = of!(GpuTexture: SRGB CLAMP_U CLAMP_V MIRROR_U MIRROR_V);

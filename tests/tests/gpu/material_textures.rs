@@ -19,7 +19,6 @@ fn floor(texels: [u32; 4], material: SceneMaterial, wide: bool) -> (Scene, Camer
         tangents: [Vec3::X.extend(1.0); 3],
         colors: [Triangle::WHITE; 3],
         material: 0,
-        lamp: false,
         groups: 0,
     };
     let texture = Texture { image: 0, srgb: false, wrap_u: Wrap::Repeat, wrap_v: Wrap::Repeat };

@@ -200,19 +200,71 @@ fn every_kind_of_light_is_blocked_before_it_and_not_behind() {
     }
 }
 
+/// The sum over the floor that is seen, by the reference or by a ray a pixel.
+fn lit(engine: &TestEngine, view: &View, lights: &[Light], traced: bool, shadows: bool) -> f64 {
+    if !traced {
+        return view.reference(engine, lights, 8, shadows).iter().map(|pixel| pixel.radiance).sum();
+    }
+    let constants = view.buffers.constants(&view.camera, SIZE, Vec3::ZERO);
+    let mut renderer = SceneRenderer::new(engine, &view.buffers, lights, constants, SIZE).unwrap();
+    renderer.visibility().unwrap();
+    let options = ShadeOptions { shadow_rays: 1, ..ShadeOptions::default() };
+    let of = (ShadowFilter::Off, ShadowHistory::Off);
+    let shadowed = renderer.shadowed(&view.buffers, options, of).unwrap();
+    renderer.shade_shadowed(&shadowed, 0).unwrap();
+    let radiance = if shadows { renderer.radiance() } else { shadowed.unshadowed() };
+    radiance.unwrap().iter().map(|pixel| f64::from(pixel.x)).sum()
+}
+
 #[test]
-fn lamps_do_not_block() {
+fn a_lamp_hides_the_light_of_others_and_not_its_own() {
     let Some(engine) = TestEngine::new() else { return };
-    let triangles = [floor(0.0), blocker()].concat();
-    let mut view = View::new(&triangles, lambert(0.8));
-    let lights = [quad(2.0)];
-    let sum = |view: &View, shadows| -> f64 {
-        view.reference(&engine, &lights, 8, shadows).iter().map(|pixel| pixel.radiance).sum()
+    let sphere = LightShape::Sphere { center: DVec3::Y * 2.0, radius: 0.3 };
+    let ends = [-0.7, 0.7].map(|x| DVec3::new(x, 2.0, 0.0));
+    let tube = |ends_are| LightShape::Tube { p0: ends[0], p1: ends[1], radius: 0.2, ends: ends_are };
+    // Facets whose corners are so many radii out
+    let ball = |radii: f64| box_about(DVec3::splat(0.3 * radii / 3.0_f64.sqrt()));
+    let rod =
+        |radii: f64| box_about(DVec3::new(0.7, 0.2 * radii / 2.0_f64.sqrt(), 0.2 * radii / 2.0_f64.sqrt()));
+    let seen = |lamp: &[Triangle]| {
+        let mut view = View::new(&[&floor(0.0), lamp].concat(), lambert(0.8));
+        // A quad's back is not seen
+        view.scene.materials[0].double_sided = false;
+        view.buffers = SceneBuffers::new(&view.scene, view.buffers.origin).unwrap();
+        view
     };
-    let (free, shadowed) = (sum(&view, false), sum(&view, true));
-    assert!(shadowed < 0.95 * free, "{shadowed} of {free}");
-    // The triangles of the box
-    view.scene.triangles[2..].iter_mut().for_each(|triangle| triangle.lamp = true);
-    view.buffers = SceneBuffers::new(&view.scene, view.buffers.origin).unwrap();
-    assert_eq!(sum(&view, true), free);
+    for traced in [false, true] {
+        let lit = |view: &View, light: &Light, shadows| {
+            lit(&engine, view, std::slice::from_ref(light), traced, shadows)
+        };
+        for (shape, lamp, large) in [
+            (sphere.clone(), ball(1.12), ball(2.2)),
+            (tube(TubeEnds::Flat), rod(1.12), rod(2.2)),
+            (tube(TubeEnds::Open), rod(1.12), rod(2.2)),
+            (tube(TubeEnds::Round), rod(1.12), rod(2.2)),
+            (quad(2.0).shape, quad_faces(2.0), quad_faces(1.99)),
+        ] {
+            let (own, other) = (light(shape), quad(3.0));
+            let view = seen(&lamp);
+            let name = format!("{:?}, traced: {traced}", own.shape);
+            assert_eq!(lit(&view, &own, true), lit(&view, &own, false), "{name}");
+            let [part, all] = [true, false].map(|shadows| lit(&view, &other, shadows));
+            assert!(part < 0.97 * all, "{name}: {part} of {all}");
+            // The twin: faces that are farther out
+            let view = seen(&large);
+            let [part, all] = [true, false].map(|shadows| lit(&view, &own, shadows));
+            assert!(part < 0.6 * all, "{name}: {part} of {all}");
+        }
+    }
+}
+
+/// A box about the place of the lamp.
+fn box_about(half: DVec3) -> Vec<Triangle> {
+    box_of(DVec3::Y * 2.0 - half, DVec3::Y * 2.0 + half)
+}
+
+/// The faces of a quad.
+fn quad_faces(height: f64) -> Vec<Triangle> {
+    let LightShape::Polygon(corners) = quad(height).shape else { panic!("a quad") };
+    vec![[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]]
 }

@@ -32,8 +32,8 @@ pub struct Reference {
     pub samples: u32,
     /// Another seed gives independent noise.
     pub seed: u32,
-    /// Whether the scene's triangles block light, but for [its lamps](arealight_scene::Triangle::lamp).
-    /// Without, light passes through everything, as in the shade pass.
+    /// Whether the scene's triangles block light. Without, light passes through everything, as in the shade
+    /// pass.
     pub shadows: bool,
     /// Whether diffuse lobes get what the Fresnel term leaves, as in glTF; else the two are added, as without
     /// [`Effects::COUPLED`].

@@ -143,7 +143,7 @@ vec3[2] load_ray_origins(ArealightSurface surface, uint index) {
                    arealight_ray_origin(surface.position, -normal, step));
 }
 
-// Whether light arrives from a light's point, `offset` from the surface.
+// Whether light arrives by a way that is `offset` from the surface.
 bool arrives(Lobes lobes, vec3 offset) {
     if (SHADOWS == 0u) {
         return true;
@@ -384,14 +384,16 @@ vec3 estimate_shape(Lobes lobes, vec3 direction, float by_brdf, ArealightGpuShap
     ShapeSample drawn = sample_shape(shape, lobes.position, random);
     vec3 towards = lobes.to_surface * arealight_normalize_or(drawn.offset, vec3(0.0));
     float towards_density = density(lobes, towards);
-    if (drawn.density > 0.0 && towards_density > 0.0 && arrives(lobes, drawn.offset)) {
+    if (drawn.density > 0.0 && towards_density > 0.0
+        && arrives(lobes, part_before(shape, lobes.position, drawn.offset) * drawn.offset)) {
         vec3 color = shape_color(shape, lobes.position, drawn.offset);
         sum += color * evaluate(lobes, towards) / (drawn.density + towards_density);
     }
     if (by_brdf > 0.0) {
         vec3 ray = direction * lobes.to_surface;
         ShapeSample met = meet_shape(shape, lobes.position, ray);
-        if (met.density > 0.0 && arrives(lobes, met.offset)) {
+        if (met.density > 0.0
+            && arrives(lobes, part_before(shape, lobes.position, met.offset) * met.offset)) {
             sum += shape_color(shape, lobes.position, ray)
                 * evaluate(lobes, direction) / (met.density + by_brdf);
         }

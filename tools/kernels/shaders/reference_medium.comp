@@ -51,11 +51,13 @@ layout(push_constant, std430) uniform MediumReferenceConstants {
     uint reserved;
 } constants;
 
-// What part of the light of a point, `offset` away, arrives.
-float arriving(vec3 position, vec3 offset) {
+// What part of the light of a point, `offset` away, arrives, if nothing but its light is beyond `part` of the
+// way.
+float arriving(vec3 position, vec3 offset, float part) {
     float away = length(offset);
+    float end = part * away;
     bool is_hidden = SHADOWS != 0u
-        && arealight_bridge_blocker(position, arealight_normalize_or(offset, vec3(0.0)), away) < away;
+        && arealight_bridge_blocker(position, arealight_normalize_or(offset, vec3(0.0)), end) < end;
     return is_hidden ? 0.0 : exp(-constants.extinction * away);
 }
 
@@ -102,7 +104,7 @@ vec3 scattered(Ray ray, uint sample_index, inout RandomState random) {
         float density = light_density(light, sampling.area, point.normal, offset, position);
         if (density > 0.0) {
             float phase = arealight_henyey_greenstein(constants.anisotropy, dot(axis, normalize(offset)));
-            float weight = drawn.y * phase * arriving(position, offset) / density;
+            float weight = drawn.y * phase * arriving(position, offset, 1.0) / density;
             sum += light_radiance(index, light, point, offset) * weight;
         }
     }
@@ -115,7 +117,8 @@ vec3 scattered(Ray ray, uint sample_index, inout RandomState random) {
             float cosine = dot(axis, normalize(point.offset));
             float phase = arealight_henyey_greenstein(constants.anisotropy, cosine);
             vec3 color = shape.radiance * shape_color(shape, position, point.offset);
-            sum += color * (drawn.y * phase * arriving(position, point.offset) / point.density);
+            float arrives = arriving(position, point.offset, part_before(shape, position, point.offset));
+            sum += color * (drawn.y * phase * arrives / point.density);
         }
     }
     return sum;

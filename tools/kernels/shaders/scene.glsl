@@ -94,10 +94,9 @@ struct ArealightGpuTexture {
 };
 
 const uint NO_TEXTURE = 0xffffffffu;
-const uint TRIANGLE_LAMP = 1u;
-const uint TRIANGLE_TANGENTS = 2u;
-const uint TRIANGLE_MIRRORED = 4u;
-const uint TRIANGLE_COLORS = 8u;
+const uint TRIANGLE_TANGENTS = 1u;
+const uint TRIANGLE_MIRRORED = 2u;
+const uint TRIANGLE_COLORS = 4u;
 const uint TRIANGLE_GROUPS_SHIFT = 8u; // the groups that it is in
 const uint MATERIAL_DOUBLE_SIDED = 1u;
 const uint MATERIAL_ALPHA_MASK = 2u;

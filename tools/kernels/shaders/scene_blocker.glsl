@@ -8,12 +8,11 @@
 #include "arealight/shadows/coverage.glsl"
 #include "arealight/shadows/ray_origin.glsl"
 
-// Both faces of a triangle block, by its alpha; lamps do not.
+// Both faces of a triangle block, by its alpha.
 void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit) {
     ArealightGpuTriangle triangle = triangles[index];
     BvhHit met;
-    if ((triangle.flags & TRIANGLE_LAMP) == 0u
-        && bvh_intersect(triangle.p0, triangle.p1, triangle.p2, index, origin, direction, hit.distance, met)
+    if (bvh_intersect(triangle.p0, triangle.p1, triangle.p2, index, origin, direction, hit.distance, met)
         && arealight_hides(surface_alpha(triangle, met.barycentric), direction, index + 1u)) {
         hit = met;
     }

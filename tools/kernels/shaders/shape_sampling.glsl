@@ -6,6 +6,7 @@
 
 #include "random.glsl"
 #include "round_lights.glsl"
+#include "arealight/shadows/ray_origin.glsl"
 
 bool is_two_sided(ArealightGpuShape shape) {
     return (shape.flags & SHAPE_TWO_SIDED) != 0u;
@@ -119,6 +120,24 @@ ShapeSample sample_tube(ArealightGpuShape shape, vec3 center, inout RandomState 
         offset = center + side * shape.axis_u + shape.radius * sqrt(u) * radial;
     }
     return ShapeSample(offset, area_density(offset, normal, areas.x + areas.y, false, 0.0));
+}
+
+// How much of the way to a point of a shape is before the shape's own geometry; from inside, all of it. It is
+// up to the greater of two distances within which no ray meets it: to the plane across the ray that touches
+// the tube, and to the endless tube.
+float part_before(ArealightGpuShape shape, vec3 position, vec3 offset) {
+    vec3 center = shape.center - position;
+    if (shape.kind == SHAPE_DISK || dot(center, center) < shape.radius * shape.radius) {
+        return 1.0;
+    }
+    float wide = AREALIGHT_ROUND_MARGIN * shape.radius;
+    vec3 axis = shape.axis_u / max(dot(shape.axis_u, shape.axis_u), 1e-37);
+    vec3 beside = center - dot(center, axis) * shape.axis_u;
+    vec3 across = offset - dot(offset, axis) * shape.axis_u;
+    float plane = (dot(center, offset) - abs(dot(shape.axis_u, offset)) - length(offset) * wide)
+        / dot(offset, offset);
+    float mantle = (length(beside) - wide) * inversesqrt(max(dot(across, across), 1e-37));
+    return clamp(max(plane, mantle), 0.0, 1.0);
 }
 
 // A point of a shape before the shading point.

@@ -181,7 +181,7 @@ pub struct GpuTriangle {
     pub u2: f32,
     /// Texture coordinate v of the third vertex.
     pub v2: f32,
-    /// [`GpuTriangle::LAMP`], [`GpuTriangle::TANGENTS`], [`GpuTriangle::MIRRORED`], [`GpuTriangle::COLORS`];
+    /// [`GpuTriangle::TANGENTS`], [`GpuTriangle::MIRRORED`], [`GpuTriangle::COLORS`];
     /// the groups of [`arealight::Light::links`] from [`GpuTriangle::GROUPS_SHIFT`] on.
     pub flags: u32,
     /// Tangent at the first vertex: its place on the unfolded octahedron, of two numbers of 16 bits with a
@@ -201,14 +201,12 @@ pub struct GpuTriangle {
 }
 
 impl GpuTriangle {
-    /// It is what a light of the scene looks like, and blocks no light.
-    pub const LAMP: u32 = 1;
     /// It has tangents.
-    pub const TANGENTS: u32 = 2;
+    pub const TANGENTS: u32 = 1;
     /// Its bitangents are `cross(tangent, normal)`, not `cross(normal, tangent)`.
-    pub const MIRRORED: u32 = 4;
+    pub const MIRRORED: u32 = 2;
     /// Some of its vertices have a colour other than white.
-    pub const COLORS: u32 = 8;
+    pub const COLORS: u32 = 4;
     /// Where its groups begin.
     pub const GROUPS_SHIFT: u32 = 8;
 }

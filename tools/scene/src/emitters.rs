@@ -7,7 +7,7 @@ use crate::messages::Messages;
 use crate::nodes::PlacedNode;
 use crate::openings;
 use crate::outlines::{Coordinates, outlines};
-use crate::scene::{SceneLamp, SceneMaterial, Triangle};
+use crate::scene::{SceneLamp, SceneMaterial};
 use crate::shape_lights;
 use crate::shown::{self, TexturedLight};
 use arealight::{Light, LightShape};
@@ -193,8 +193,8 @@ impl Emitters {
         true
     }
 
-    /// Drops the lights that are black, and says marks the triangles that look like the others.
-    pub fn finish(&mut self, triangles: &mut [Triangle]) {
+    /// Drops the lights that are black.
+    pub fn finish(&mut self) {
         let shines = |light: &Light| light.radiance != Vec3::ZERO;
         // How many lights before each stay
         let mut kept = vec![0];
@@ -207,7 +207,6 @@ impl Emitters {
             if lights.is_empty() {
                 continue;
             }
-            triangles[drawn.clone()].iter_mut().for_each(|triangle| triangle.lamp = true);
             // A shape of several primitives is one lamp
             match self.lamps.last_mut() {
                 Some(last) if last.lights == lights && last.triangles.end == drawn.start => {

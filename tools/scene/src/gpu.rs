@@ -145,7 +145,6 @@ fn pack(triangle: &Triangle, origin: DVec3) -> GpuTriangle {
         u2: uv2.x,
         v2: uv2.y,
         flags: u32::from(triangle.groups) << GpuTriangle::GROUPS_SHIFT
-            | flag(triangle.lamp, GpuTriangle::LAMP)
             | flag(has_tangents, GpuTriangle::TANGENTS)
             | flag(triangle.colors != [Triangle::WHITE; 3], GpuTriangle::COLORS)
             | flag(triangle.tangents[0].w < 0.0, GpuTriangle::MIRRORED),

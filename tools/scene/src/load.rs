@@ -91,7 +91,7 @@ fn read(mut document: Document, name: String, options: LoadOptions) -> Result<Sc
     }
     let light_textures =
         light_textures::assign(&emitters.textured, &mut emitters.lights, &mut materials.textures, messages);
-    emitters.finish(&mut triangles);
+    emitters.finish();
     // Lights and cameras that hang on nodes
     let Emitters { mut lights, mut lamps, .. } = emitters;
     let shown = lights.len();

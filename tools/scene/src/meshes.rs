@@ -106,16 +106,7 @@ fn place_primitive<'a>(
         let uvs = corners.map(|i| primitive.uvs[i]);
         let colors = corners.map(|i| primitive.colors.get(i).copied().unwrap_or(Triangle::WHITE));
         let positions = [p, q, r];
-        triangles.push(Triangle {
-            positions,
-            normals,
-            uvs,
-            tangents,
-            colors,
-            material,
-            lamp: false,
-            groups: node.groups,
-        });
+        triangles.push(Triangle { positions, normals, uvs, tangents, colors, material, groups: node.groups });
         kept.push(corners.map(|i| i as u32));
     }
     let largest = in_space.iter().fold(0.0_f64, |largest, p| largest.max(p.abs().max_element()));

@@ -67,6 +67,13 @@ pub struct SceneLamp {
     pub lights: Range<usize>,
 }
 
+impl Scene {
+    /// Whether a triangle is what one of the lights looks like.
+    pub fn is_lamp(&self, triangle: usize) -> bool {
+        self.lamps.iter().any(|lamp| lamp.triangles.contains(&triangle))
+    }
+}
+
 impl SceneLamp {
     /// One for each of some lights that nothing looks like.
     pub(crate) fn bare(lights: Range<usize>) -> impl Iterator<Item = Self> {
@@ -92,9 +99,6 @@ pub struct Triangle {
     pub colors: [[u8; 4]; 3],
     /// Index into [`Scene::materials`].
     pub material: u32,
-    /// It is what one of [`Scene::lights`] looks like. A lamp blocks no light: neither its own, which is
-    /// where the lamp is, nor another's.
-    pub lamp: bool,
     /// The groups that it is in, for [`Light::links`].
     pub groups: u8,
 }

@@ -8,6 +8,7 @@ use crate::openings;
 use crate::scene::SceneMaterial;
 use crate::shown;
 use crate::uv_map::{UvMap, UvTolerance};
+use arealight::blockers::ROUND_MARGIN;
 use arealight::{Light, LightShape, TubeEnds};
 use glam::{DAffine3, DVec2, DVec3};
 use serde::Deserialize;
@@ -69,7 +70,9 @@ pub(crate) fn light(
         let two_sided = material.double_sided && matches!(shape, LightShape::Disk { .. });
         let (name, radiance) = (instance.name.clone(), material.emission);
         let light = Light { name, radiance, two_sided, links: node.links, shape, ..Light::default() };
-        light.validate().map(|()| (light, image)).map_err(|error| error.to_string())
+        light.validate().map_err(|error| error.to_string())?;
+        let fits = instance.positions.iter().all(|position| is_at(&light.shape, *position));
+        fits.then_some((light, image)).ok_or_else(|| "its mesh is elsewhere, and would hide it".into())
     });
     match &light {
         Ok((_, None)) if texture.is_some() => {
@@ -81,6 +84,23 @@ pub(crate) fn light(
         }
     }
     light.ok()
+}
+
+/// Whether a mesh's vertex is where rays to a shape end: in a disk's plane, to a part of its size, or within
+/// [`ROUND_MARGIN`] of the others' radii.
+fn is_at(shape: &LightShape, position: DVec3) -> bool {
+    match *shape {
+        LightShape::Disk { center, axis_u, axis_v } => {
+            let normal = axis_u.cross(axis_v).normalize_or_zero();
+            (position - center).dot(normal).abs() <= 1e-4 * axis_u.length().min(axis_v.length())
+        }
+        LightShape::Sphere { center, radius } => position.distance(center) <= ROUND_MARGIN * radius,
+        LightShape::Tube { p0, p1, radius, .. } => {
+            let part = (position - p0).dot(p1 - p0) / p0.distance_squared(p1);
+            position.distance(p0.lerp(p1, part.clamp(0.0, 1.0))) <= ROUND_MARGIN * radius
+        }
+        LightShape::Polygon(_) | LightShape::Mesh { .. } => true,
+    }
 }
 
 /// An ellipse whose axes run along the image that its mesh shows, as a light's do, and the texture

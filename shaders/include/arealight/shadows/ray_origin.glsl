@@ -13,6 +13,9 @@ const float AREALIGHT_ORIGIN_PART = 1.52587890625e-5;
 // which may be there.
 const float AREALIGHT_RAY_PART = 0.999755859375;
 
+// How much wider than a sphere or a tube its own geometry may be: what is drawn of facets is not round.
+const float AREALIGHT_ROUND_MARGIN = 1.125;
+
 // The origin of a ray that leaves the surface at `position` on the side of `normal`, the unit normal of its
 // geometry (not of its shading). `step`: by how much the position may be wrong along any axis beyond its own
 // rounding, in its unit: by the rounding of the vertices that it is between, and for depth that is not

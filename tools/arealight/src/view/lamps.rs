@@ -291,8 +291,10 @@ mod tests {
                     assert_eq!(emission(&after, is), emission(&before, was) * factor);
                 }
             }
-            let still =
-                |scene: &Scene| scene.triangles.iter().filter(|t| !t.lamp).copied().collect::<Vec<_>>();
+            let still = |scene: &Scene| {
+                let still = (0..scene.triangles.len()).filter(|index| !scene.is_lamp(*index));
+                still.map(|index| scene.triangles[index]).collect::<Vec<_>>()
+            };
             assert_eq!(still(&before), still(&after));
             // As they were: nothing is changed
             let mut same = before.clone();

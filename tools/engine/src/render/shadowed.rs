@@ -97,17 +97,15 @@ impl ShadowedView {
     }
 }
 
-/// What of a scene blocks light: every triangle but those of lamps, which would hide the lights that they
-/// are. Those that are not all there have as their number one more than their index in the scene.
-fn blockers(scene: &SceneBuffers) -> Result<Blockers, BufferError> {
-    let numbered = (1..).zip(&scene.triangles);
-    let shown: Vec<_> = numbered.filter(|(_, triangle)| triangle.flags & GpuTriangle::LAMP == 0).collect();
-    let vertices = |(_, t): &(u32, &GpuTriangle)| [t.p0, t.p1, t.p2].map(Vec3::from_array);
-    let number = |index: u32| {
-        let (number, triangle) = shown[index as usize];
-        if scene.materials[triangle.material as usize].is_whole() { 0 } else { number }
+/// Every triangle of a scene as the kernels have those of [`Blockers`], in the order of its hierarchy. Those
+/// that are not all there have as their number one more than their index in the scene.
+fn blockers(scene: &SceneBuffers) -> Vec<[[f32; 4]; 3]> {
+    let record = |(number, t): (u32, &GpuTriangle)| {
+        let number = if scene.materials[t.material as usize].is_whole() { 0 } else { number };
+        let vertex = |[x, y, z]: [f32; 3], number| [x, y, z, f32::from_bits(number)];
+        [vertex(t.p0, number), vertex(t.p1, 0), vertex(t.p2, 0)]
     };
-    Ok(Blockers::new(&shown.iter().map(vertices).collect::<Vec<_>>())?.with_alpha(number))
+    (1..).zip(&scene.triangles).map(record).collect()
 }
 
 impl SceneRenderer<'_> {
@@ -116,10 +114,9 @@ impl SceneRenderer<'_> {
     /// # Errors
     /// [`EngineError`] where it does not fit the device, or the device fails.
     pub fn blockers(&self, scene: &SceneBuffers) -> Result<Rc<BlockerBuffers>, EngineError> {
-        let blockers = blockers(scene)?;
         Ok(Rc::new(BlockerBuffers {
-            nodes: self.engine.storage("blocker nodes", &blockers.nodes)?,
-            triangles: self.engine.storage("blocker triangles", &blockers.triangles)?,
+            nodes: self.engine.storage("blocker nodes", &scene.nodes)?,
+            triangles: self.engine.storage("blocker triangles", &blockers(scene))?,
             is_masked: scene.has_alpha(),
         }))
     }

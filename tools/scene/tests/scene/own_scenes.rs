@@ -213,7 +213,7 @@ fn the_shadows_are_of_one_rectangle_on_two_floors() {
         // Files hold 16 bits of fraction
         let size = light.shape.bounds()[1] - light.shape.bounds()[0];
         assert!((size - DVec3::new(1.6, 0.0, 0.9)).length() < 1e-4, "{size}");
-        assert_eq!(scene.triangles.iter().filter(|triangle| triangle.lamp).count(), 2);
+        assert_eq!(scene.lamps[0].triangles.len(), 2);
         assert!(light.shape.area_vector().y < 0.0, "it faces the floor");
     }
     assert_eq!(matt.triangles.len(), glossy.triangles.len());
@@ -240,10 +240,10 @@ fn check_hundred_lamps(scene: &Scene) {
     assert_eq!(scene.lights.len(), 100);
     assert!(scene.lights.iter().all(|light| light.shape.is_convex_quad() && !light.two_sided));
     let (boxes, floor) = (12 * 18, 2);
-    assert_eq!(scene.triangles.iter().filter(|triangle| !triangle.lamp).count(), boxes + floor);
+    let plain = (0..scene.triangles.len()).filter(|index| !scene.is_lamp(*index)).collect::<Vec<_>>();
+    assert_eq!(plain.len(), boxes + floor);
     // No lamp is in a box: all hang above them
-    let heights =
-        scene.triangles.iter().filter(|triangle| !triangle.lamp).flat_map(|t| t.positions.map(|p| p.y));
+    let heights = plain.iter().flat_map(|index| scene.triangles[*index].positions.map(|p| p.y));
     let lowest = scene.lights.iter().map(|light| light.shape.bounds()[0].y).fold(f64::MAX, f64::min);
     assert!(lowest > heights.fold(0.0, f64::max), "{lowest}");
 }
@@ -327,7 +327,8 @@ fn each_light_is_one_lamp_s_and_a_lamp_is_what_it_looks_like() {
         lights.sort_unstable();
         assert_eq!(lights, (0..scene.lights.len()).collect::<Vec<_>>(), "{name}");
         let of_lamps: usize = scene.lamps.iter().map(|lamp| lamp.triangles.len()).sum();
-        assert_eq!(of_lamps, scene.triangles.iter().filter(|triangle| triangle.lamp).count(), "{name}");
+        let lamps = (0..scene.triangles.len()).filter(|index| scene.is_lamp(*index));
+        assert_eq!(of_lamps, lamps.count(), "{name}: none is two lamps'");
         for lamp in scene.lamps.iter().filter(|lamp| !lamp.triangles.is_empty()) {
             // What looks like a light is where it is, and about as large: a tube in place of a capsule lacks
             // the ends

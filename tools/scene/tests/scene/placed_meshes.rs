@@ -138,7 +138,7 @@ fn each_instance_of_a_mesh_is_there_and_shines() {
 #[test]
 fn instances_of_a_shape_are_lights_of_their_own() {
     let mut writer = instanced();
-    writer.root["nodes"][0]["extras"] = json!({ "arealight": { "shape": "sphere", "radius": 0.5 } });
+    writer.root["nodes"][0]["extras"] = json!({ "arealight": { "shape": "sphere", "radius": 1 } });
     let scene = load(writer);
     assert_eq!((scene.lights.len(), warnings(&scene)), (3, Vec::new()));
 }

@@ -16,7 +16,6 @@ fn scene_of(triangles: &[[DVec3; 3]], double_sided: bool) -> Scene {
         tangents: [Vec4::ZERO; 3],
         colors: [Triangle::WHITE; 3],
         material: 0,
-        lamp: false,
         groups: 0,
     };
     scene.triangles = triangles.iter().map(triangle).collect();

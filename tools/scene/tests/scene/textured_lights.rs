@@ -280,7 +280,7 @@ fn black_parts_are_no_lights() {
     assert_eq!((scene.lights.len(), scene.light_textures.len()), (1, 1));
     assert!(scene.lights[0].shape.center().x > 5.0, "the third");
     // All are seen, and only what shines is a lamp
-    let lamps: Vec<bool> = scene.triangles.iter().map(|triangle| triangle.lamp).collect();
+    let lamps: Vec<bool> = (0..8).map(|triangle| scene.is_lamp(triangle)).collect();
     assert_eq!(lamps, [false, false, false, false, true, true, false, false]);
 }
 
