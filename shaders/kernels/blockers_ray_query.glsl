@@ -4,8 +4,8 @@
 // What blocks light, from an acceleration structure of the host's, on devices with VK_KHR_ray_query: at
 // binding 0 of descriptor set 1, one VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR for the compute stage. Its
 // instances are relative to the origin that lights and positions are relative to. Both faces of a triangle
-// block, of instances whose mask has its lowest bit. With AREALIGHT_HOST_ALPHA 1 the host's shader is asked of
-// triangles that are not opaque by the flags of their geometry and instance; else all are.
+// block, of instances whose mask has its lowest bit. With AREALIGHT_HOST_ALPHA 1 the host's shader is asked
+// of triangles that are not opaque by the flags of their geometry and instance; else all are.
 #extension GL_EXT_ray_query : require
 #ifndef AREALIGHT_HOST_ALPHA
 #define AREALIGHT_HOST_ALPHA 0

@@ -154,6 +154,8 @@ pub struct CLibrary<'a> {
     pub arealight: *mut Arealight,
     /// Whether frames are recorded by what is pushed, of passes that are made so.
     pub is_pushed: Cell<bool>,
+    /// Set 1 of the next frames, for a module of the host's, or 0.
+    pub host_set: Cell<u64>,
     /// What shades instead, if it is not null, and its next place.
     owner: Cell<(*mut ArealightAreaLights, u32)>,
     /// The table's, once it was uploaded.
@@ -186,8 +188,9 @@ impl<'a> CLibrary<'a> {
         let mut arealight = null_mut();
         // SAFETY: the handles are the engine's, which outlives the library's object.
         good(unsafe { arealight_create(&raw const host, null(), &raw mut arealight) });
-        let (is_pushed, owner, memory) = (Cell::default(), Cell::new((null_mut(), 0)), Cell::default());
-        Self { engine, _entry: entry, host, arealight, is_pushed, owner, memory }
+        let (owner, memory) = (Cell::new((null_mut(), 0)), Cell::default());
+        let (is_pushed, host_set) = (Cell::default(), Cell::default());
+        Self { engine, _entry: entry, host, arealight, is_pushed, host_set, owner, memory }
     }
 
     /// With its table.
@@ -316,6 +319,7 @@ impl<'a> CLibrary<'a> {
             height: 1,
             camera: camera.to_array(),
             lights: packed.summary,
+            host_set: self.host_set.get(),
             ..NO_FRAME
         };
         self.submit(pass, lights, &resources, &frame);

@@ -388,8 +388,8 @@ typedef struct ArealightModule {
 typedef struct ArealightPassOptions {
     // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL,
     // _COAT_BY_ALBEDO, _SHEEN, _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO,
-    // _MULTIPLE_SCATTERING, _TRANSMISSION and _THIN_FILM. 0 is DIFFUSE and GLOSSY. What lights need is known
-    // from ArealightFrame.lights.
+    // _MULTIPLE_SCATTERING, _TRANSMISSION, _THIN_FILM and _LINKED. 0 is DIFFUSE and GLOSSY. What lights need
+    // is known from ArealightFrame.lights.
     uint32_t surfaces;
     // One of AREALIGHT_HORIZON_*.
     uint32_t horizon;
@@ -607,6 +607,8 @@ typedef struct ArealightFrame {
     const float *position_from_clip;
     // With tiles, ArealightResources.tile_lists of the set: dispatches are read from it. Else 0.
     struct ArealightBuffer tile_lists;
+    // VkDescriptorSet for set 1 of ArealightPassOptions.module, where it has a layout of it. Else 0.
+    uint64_t host_set;
     // The viewport that drew the G-buffer, with a negative height where y is up. All 0: just the texels of
     // the frame's pixels, y down. Only positions from depth, and a shadow's history, depend on it.
     struct ArealightViewport viewport;
@@ -798,12 +800,13 @@ typedef struct ArealightMediumFrame {
     // Of random numbers: one more in each frame.
     uint32_t seed;
     // Lights are left out of froxels that together add no more than this to a pixel's radiance, in the sum
-    // of the channels, for each unit of albedo. 0: only lights that nothing comes of.
+    // of the channels, for each unit of albedo. 0: only lights that nothing comes of. Frames of fewer than
+    // 32 lights leave none out.
     float cull_radiance;
 } ArealightMediumFrame;
 
-// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before
-// another frame uses it, the host waits for the stages `TRANSFER`, `COMPUTE_SHADER` and `DRAW_INDIRECT`.
+// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own, to frames
+// before on the same queue, too.
 typedef struct ArealightTileMemory {
     // Bytes; 0 for a pass without tiles.
     uint64_t size;
@@ -1581,7 +1584,7 @@ AREALIGHT_ASSERT(offsetof(ArealightViewport, width) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, height) == 12);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, min_depth) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, max_depth) == 20);
-AREALIGHT_ASSERT(sizeof(ArealightFrame) == 136);
+AREALIGHT_ASSERT(sizeof(ArealightFrame) == 144);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, height) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, camera) == 8);
@@ -1589,12 +1592,13 @@ AREALIGHT_ASSERT(offsetof(ArealightFrame, lights) == 20);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, seed) == 36);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, position_from_clip) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, tile_lists) == 48);
-AREALIGHT_ASSERT(offsetof(ArealightFrame, viewport) == 72);
-AREALIGHT_ASSERT(offsetof(ArealightFrame, offset) == 96);
-AREALIGHT_ASSERT(offsetof(ArealightFrame, rows) == 104);
-AREALIGHT_ASSERT(offsetof(ArealightFrame, stencil_compare_mask) == 112);
-AREALIGHT_ASSERT(offsetof(ArealightFrame, stencil_reference) == 116);
-AREALIGHT_ASSERT(offsetof(ArealightFrame, light_offsets) == 120);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, host_set) == 72);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, viewport) == 80);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, offset) == 104);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, rows) == 112);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, stencil_compare_mask) == 120);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, stencil_reference) == 124);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, light_offsets) == 128);
 AREALIGHT_ASSERT(sizeof(ArealightTileMemory) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, size) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, usage) == 8);

@@ -163,7 +163,7 @@ pub(crate) unsafe fn read_lights(lights: *const ArealightLight, count: u32) -> R
 /// The light's pointers are null or valid.
 unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Failure> {
     let field = |name| format!("lights[{index}].{name}");
-    let wrong = |name, number, known| Failure::argument(format!("{}: {number} is no {known}", field(name)));
+    let wrong = |name, number, known| Failure::argument(format!("{}: {number} is not {known}", field(name)));
     let [center, axis_u, axis_v] = [light.center, light.axis_u, light.axis_v].map(DVec3::from_array);
     let radius = light.radius;
     let error = f64::from(light.cluster_error);
@@ -194,7 +194,7 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
             let ends = level(light.ends, &[TubeEnds::Open, TubeEnds::Flat, TubeEnds::Round], &field("ends"))?;
             LightShape::Tube { p0: center - axis_u, p1: center + axis_u, radius, ends }
         }
-        other => return Err(wrong("kind", other, "AREALIGHT_LIGHT_*")),
+        other => return Err(wrong("kind", other, "one of AREALIGHT_LIGHT_*")),
     };
     let textured = flag(light.textured, &field("textured"))?;
     // SAFETY: as above.
@@ -214,7 +214,7 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
         texture: textured.then_some(LightTexture { layer: light.texture_layer, uvs }),
         profile,
         opening: has_opening.then_some(opening),
-        links: u8::try_from(light.links).map_err(|_| wrong("links", light.links, "at most 255"))?,
+        links: u8::try_from(light.links).map_err(|_| wrong("links", light.links, "from 0 to 255"))?,
         shape,
     };
     if !holes.is_empty() {

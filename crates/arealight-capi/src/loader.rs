@@ -11,13 +11,14 @@ use std::ffi::{CStr, CString, c_void};
 const INSTANCE: &str = "vkGetPhysicalDeviceProperties vkGetPhysicalDeviceFormatProperties
     vkGetPhysicalDeviceImageFormatProperties vkGetPhysicalDeviceMemoryProperties";
 const DEVICE: &str = "vkAllocateDescriptorSets vkAllocateMemory vkBindBufferMemory vkBindImageMemory
-    vkCmdBindDescriptorSets vkCmdBindPipeline vkCmdClearColorImage vkCmdCopyBufferToImage vkCmdDispatch
-    vkCmdDispatchBase vkCmdDispatchIndirect vkCmdPipelineBarrier vkCmdPushConstants vkCmdUpdateBuffer
-    vkCreateBuffer vkCreateComputePipelines vkCreateDescriptorPool vkCreateDescriptorSetLayout vkCreateImage
-    vkCreateImageView vkCreatePipelineLayout vkCreateSampler vkCreateShaderModule vkDestroyBuffer
-    vkDestroyDescriptorPool vkDestroyDescriptorSetLayout vkDestroyImage vkDestroyImageView vkDestroyPipeline
-    vkDestroyPipelineLayout vkDestroySampler vkDestroyShaderModule vkFreeMemory vkGetBufferMemoryRequirements
-    vkGetImageMemoryRequirements vkMapMemory vkUnmapMemory vkUpdateDescriptorSets";
+    vkCmdBindDescriptorSets vkCmdBindPipeline vkCmdClearColorImage vkCmdCopyBuffer vkCmdCopyBufferToImage
+    vkCmdDispatch vkCmdDispatchBase vkCmdDispatchIndirect vkCmdPipelineBarrier vkCmdPushConstants
+    vkCmdUpdateBuffer vkCreateBuffer vkCreateComputePipelines vkCreateDescriptorPool
+    vkCreateDescriptorSetLayout vkCreateImage vkCreateImageView vkCreatePipelineLayout vkCreateSampler
+    vkCreateShaderModule vkDestroyBuffer vkDestroyDescriptorPool vkDestroyDescriptorSetLayout
+    vkDestroyImage vkDestroyImageView vkDestroyPipeline vkDestroyPipelineLayout vkDestroySampler
+    vkDestroyShaderModule vkFreeMemory vkGetBufferMemoryRequirements vkGetImageMemoryRequirements
+    vkMapMemory vkUnmapMemory vkUpdateDescriptorSets";
 
 /// The function tables of the host's instance and device.
 ///
@@ -63,4 +64,39 @@ fn finder(
         let found = unsafe { function(handle, name.as_ptr()) };
         found.map_or(std::ptr::null(), |found| found as *const c_void)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::DEVICE;
+    use std::path::Path;
+
+    /// What the recorder's sources call of a device, as C names it.
+    fn called(folder: &Path, found: &mut Vec<String>) {
+        for entry in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if entry.is_dir() {
+                called(&entry, found);
+                continue;
+            }
+            let source = std::fs::read_to_string(&entry).unwrap();
+            for call in source.split("device.").chain(source.split("device().")).skip(1) {
+                let name = call.split(|c: char| !(c.is_ascii_lowercase() || c == '_' || c.is_ascii_digit()));
+                let name = name.into_iter().next().unwrap_or_default();
+                if call[name.len()..].starts_with('(') && !["clone", "handle"].contains(&name) {
+                    let words = name.split('_').map(|word| word[..1].to_uppercase() + &word[1..]);
+                    found.push(format!("vk{}", words.collect::<String>()));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_called_is_looked_for() {
+        let mut found = vec![];
+        called(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../arealight-vk/src"), &mut found);
+        assert!(found.len() > 30 && found.contains(&"vkCmdCopyBuffer".into()), "{found:?}");
+        for name in found {
+            assert!(DEVICE.split_whitespace().any(|listed| listed == name), "{name}");
+        }
+    }
 }

@@ -75,7 +75,8 @@ pub struct ArealightMediumFrame {
     /// Of random numbers: one more in each frame.
     pub seed: u32,
     /// Lights are left out of froxels that together add no more than this to a pixel's radiance, in the sum
-    /// of the channels, for each unit of albedo. 0: only lights that nothing comes of.
+    /// of the channels, for each unit of albedo. 0: only lights that nothing comes of. Frames of fewer than
+    /// 32 lights leave none out.
     pub cull_radiance: f32,
 }
 

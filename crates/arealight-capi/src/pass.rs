@@ -40,14 +40,15 @@ pub unsafe extern "C" fn arealight_pass_create(
         let options = arguments::read(options, "options")?;
         let ways = [Descriptors::Sets, Descriptors::LightOffsets, Descriptors::Pushed];
         let descriptors = level(options.descriptors, &ways, "options.descriptors")?;
-        let (module, _) = host_module(&options.module, false)?;
+        let (module, host_set) = host_module(&options.module, false)?;
         let tiles = tile_options(options);
         if tiles.is_some() && module.is_some() {
             let why = "must be 0, since tiles are not classified by a G-buffer of the host's own";
             return Err(Failure::argument(format!("options.tile_capacity: {why}")));
         }
         let table_size = arealight.table_size();
-        let info = ShadePassInfo { tiles, table_size, descriptors, module, ..shade_options(options)?.into() };
+        let options = shade_options(options)?.into();
+        let info = ShadePassInfo { tiles, table_size, descriptors, module, host_set, ..options };
         let pass = ShadePass::new(arealight.context(), info)?;
         arguments::write(out, handles::give(ArealightPass { pass }), "out")
     })
@@ -56,7 +57,7 @@ pub unsafe extern "C" fn arealight_pass_create(
 /// A module of the host's, if it has one, and the layout of set 1.
 pub(crate) type HostModule = (Option<Vec<u32>>, Option<vk::DescriptorSetLayout>);
 
-/// What was given of a module; `reads_set`: of a pass of rays, whose module reads set 1.
+/// What was given of a module; `reads_set`: of a pass of rays, whose module always reads set 1.
 ///
 /// # Safety
 /// The pointer is null or valid.
@@ -69,9 +70,6 @@ pub(crate) unsafe fn host_module(module: &ArealightModule, reads_set: bool) -> R
         return Err(Failure::argument(format!("module.size: {size} bytes are no whole words of SPIR-V")));
     }
     arguments::refuse_null([(reads_set && host_set_layout == 0, "module.host_set_layout")])?;
-    if !reads_set && host_set_layout != 0 {
-        return Err(Failure::argument("module.host_set_layout: must be 0, since shading reads set 0 alone"));
-    }
     // SAFETY: the same contract.
     let words = unsafe { arguments::array(words, size / 4, "module.words") }?.to_vec();
     let layout = (host_set_layout != 0).then(|| vk::DescriptorSetLayout::from_raw(host_set_layout));
@@ -255,8 +253,9 @@ pub unsafe extern "C" fn arealight_pass_record(
     // SAFETY: the caller vouches for the pointers, the command buffer and the set.
     call(|| unsafe {
         let pass = &handles::borrow(pass, "pass")?.pass;
-        let frame = read_frame_of(pass, arguments::read(frame, "frame")?)?;
-        let (commands, bound) = bound(command_buffer, set, 0)?;
+        let given = arguments::read(frame, "frame")?;
+        let frame = read_frame_of(pass, given)?;
+        let (commands, bound) = bound(command_buffer, set, given.host_set)?;
         Ok(pass.record(commands, bound, &frame)?)
     })
 }
@@ -279,10 +278,12 @@ pub unsafe extern "C" fn arealight_pass_record_pushed(
         let pass = &handles::borrow(pass, "pass")?.pass;
         let arealight = handles::borrow(arealight, "arealight")?;
         let resources = resources_of(pass, arealight, resources)?;
-        let frame = read_frame_of(pass, arguments::read(frame, "frame")?)?;
+        let given = arguments::read(frame, "frame")?;
+        let frame = read_frame_of(pass, given)?;
         arguments::refuse_null([(command_buffer.is_null(), "command_buffer")])?;
         let command_buffer = vk::CommandBuffer::from_raw(command_buffer as u64);
-        let bound = Bound::Pushed { resources: &resources, host_set: None };
+        let host_set = (given.host_set != 0).then(|| vk::DescriptorSet::from_raw(given.host_set));
+        let bound = Bound::Pushed { resources: &resources, host_set };
         Ok(pass.record(command_buffer, bound, &frame)?)
     })
 }

@@ -102,8 +102,8 @@ pub struct ArealightModule {
 pub struct ArealightPassOptions {
     /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL,
     /// _COAT_BY_ALBEDO, _SHEEN, _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO,
-    /// _MULTIPLE_SCATTERING, _TRANSMISSION and _THIN_FILM. 0 is DIFFUSE and GLOSSY. What lights need is known
-    /// from ArealightFrame.lights.
+    /// _MULTIPLE_SCATTERING, _TRANSMISSION, _THIN_FILM and _LINKED. 0 is DIFFUSE and GLOSSY. What lights need
+    /// is known from ArealightFrame.lights.
     pub surfaces: u32,
     /// One of AREALIGHT_HORIZON_*.
     pub horizon: u32,
@@ -406,6 +406,8 @@ pub struct ArealightFrame {
     pub position_from_clip: *const f32,
     /// With tiles, ArealightResources.tile_lists of the set: dispatches are read from it. Else 0.
     pub tile_lists: ArealightBuffer,
+    /// VkDescriptorSet for set 1 of ArealightPassOptions.module, where it has a layout of it. Else 0.
+    pub host_set: u64,
     /// The viewport that drew the G-buffer, with a negative height where y is up. All 0: just the texels of
     /// the frame's pixels, y down. Only positions from depth, and a shadow's history, depend on it.
     pub viewport: ArealightViewport,
@@ -425,8 +427,8 @@ pub struct ArealightFrame {
     pub light_offsets: [u32; 3],
 }
 
-/// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before
-/// another frame uses it, the host waits for the stages `TRANSFER`, `COMPUTE_SHADER` and `DRAW_INDIRECT`.
+/// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own, to frames
+/// before on the same queue, too.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ArealightTileMemory {

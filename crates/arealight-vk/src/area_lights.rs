@@ -113,7 +113,7 @@ impl AreaLights {
     /// # Errors
     /// As [`Context::new`], [`ShadePass::new`], [`ShadowPass::new`], [`MediumPass::new`] and
     /// [`LightTextures::new`](crate::LightTextures::new); [`Error::InvalidArgument`] where there is no frame
-    /// in flight; [`Error::Vulkan`] where memory is out.
+    /// in flight, or rays of a medium alone; [`Error::Vulkan`] where memory is out.
     pub unsafe fn new(
         instance: &ash::Instance,
         physical_device: vk::PhysicalDevice,
@@ -141,6 +141,11 @@ impl AreaLights {
         if frames == 0 {
             let message = "is 0, but a frame that is recorded is in flight".into();
             return Err(Error::InvalidArgument { field: "frames_in_flight", message });
+        }
+        let has_rays = info.medium.is_some_and(|(medium, _)| medium.shadow_rays);
+        if has_rays && info.options.shadow_rays == 0 {
+            let message = "is 0, but the medium has rays, which take blockers: 1 will do".into();
+            return Err(Error::InvalidArgument { field: "shadow_rays", message });
         }
         let allocator = SharedAllocator(allocator);
         // SAFETY: the same contract, throughout.

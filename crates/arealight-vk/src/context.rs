@@ -64,6 +64,7 @@ impl Context {
                 storage_images: properties.limits.max_per_stage_descriptor_storage_images,
                 storage_buffers: properties.limits.max_per_stage_descriptor_storage_buffers,
                 storage_buffer_alignment: properties.limits.min_storage_buffer_offset_alignment,
+                storage_buffer_range: properties.limits.max_storage_buffer_range,
             },
             light_texture_limits: light_texture_limits(instance, physical_device)?,
             whole_modules: false,

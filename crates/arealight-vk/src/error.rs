@@ -2,7 +2,8 @@
 
 use ash::vk;
 
-/// An error of the recorder. Nothing was recorded and nothing leaks where one is returned.
+/// An error of the recorder. Nothing was recorded and nothing leaks where one is returned, but for
+/// `AreaLights::shade`.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

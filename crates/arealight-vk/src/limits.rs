@@ -29,6 +29,18 @@ pub(crate) struct DescriptorLimits {
     pub(crate) storage_buffers: u32,
     /// `minStorageBufferOffsetAlignment`.
     pub(crate) storage_buffer_alignment: vk::DeviceSize,
+    /// `maxStorageBufferRange`.
+    pub(crate) storage_buffer_range: u32,
+}
+
+impl DescriptorLimits {
+    /// Refuses a buffer that a set cannot bind whole.
+    pub(crate) fn check_range(self, bytes: vk::DeviceSize, needed_by: &'static str) -> Result<(), Error> {
+        if bytes > self.storage_buffer_range.into() {
+            return Err(Error::MissingFeature { feature: "maxStorageBufferRange", needed_by });
+        }
+        Ok(())
+    }
 }
 
 /// The largest light textures of the device.

@@ -6,7 +6,7 @@ use crate::layouts::{Descriptors, Layouts};
 use crate::module::check_module;
 use crate::pipelines::Pipelines;
 use crate::resource::Resource;
-use crate::shade::{Bound, ResourceAccess, ShadeResources, accesses_of};
+use crate::shade::{Bound, ResourceAccess, ShadeResources, accesses_of, check_lights};
 use crate::shadows::{BlockerResources, USED, WRITTEN};
 use arealight::gpu::MediumConstants;
 use arealight::kernels::{
@@ -24,7 +24,7 @@ pub struct MediumPassInfo {
     /// How it is shaded.
     pub options: MediumOptions,
     /// A module that the host compiled from `medium_scatter.comp` with its own answer to what arrives of a
-    /// light, or to what blocks a ray (docs/shadows.md).
+    /// light, or to what blocks a ray (docs/embed-shadows.md).
     pub module: Option<Vec<u32>>,
     /// The layout of descriptor set 1, where what that module reads is.
     pub host_set: Option<vk::DescriptorSetLayout>,
@@ -126,6 +126,10 @@ impl MediumPass {
         let MediumPassInfo { options, module, host_set } = info;
         let module = module.unwrap_or_else(|| MEDIUM_SCATTER.words());
         check_module(&module, &MEDIUM_SCATTER)?;
+        if options.samples > MediumOptions::MOST_SAMPLES {
+            let message = format!("is {}, and at most {}", options.samples, MediumOptions::MOST_SAMPLES);
+            return Err(Error::InvalidArgument { field: "samples", message });
+        }
         let mut compose = MEDIUM_COMPOSE.words();
         store_to(options.format, &mut compose); // froxels have a format of their own
         let bindings = MEDIUM_SCATTER.bindings().to_vec();
@@ -252,6 +256,7 @@ impl MediumPass {
     ) -> Result<(), Error> {
         let bound = bound.into();
         let context = self.layouts().context();
+        self.prepare(frame.lights)?;
         // SAFETY: the same contract; barriers are between the stages.
         unsafe {
             let _label = context.names.label(command_buffer, c"arealight medium");
@@ -281,16 +286,7 @@ impl MediumPass {
         bound: impl Into<Bound<'a>>,
         frame: &MediumFrame,
     ) -> Result<(), Error> {
-        let bound = bound.into();
-        self.layouts().check_host_set(bound.host_set())?;
-        let sets = match bound {
-            Bound::Set(set) => vec![set],
-            Bound::Sets(sets) => sets.to_vec(),
-            Bound::Pushed { .. } => {
-                let message = "are given, but passes of media take sets".into();
-                return Err(Error::InvalidArgument { field: "resources", message });
-            }
-        };
+        let sets = bound.into().sets(self.layouts())?;
         let constants = constants_of(frame)?;
         let bytes = bytemuck::bytes_of(&constants);
         let [columns, rows, slices] = frame.froxels;
@@ -299,7 +295,6 @@ impl MediumPass {
             MediumStage::Integrate => [columns, rows, 1],
             MediumStage::Compose => [frame.size[0], frame.size[1], 1],
         });
-        self.layouts().check_set(sets[0])?;
         self.stages[stage as usize].check(bytes, groups)?;
         if stage == MediumStage::Scatter {
             self.hide(|pass| {
@@ -328,6 +323,7 @@ fn constants_of(frame: &MediumFrame) -> Result<MediumConstants, Error> {
     if frame.size.contains(&0) {
         return wrong("size", "has no pixels");
     }
+    check_lights(frame.lights)?;
     if !frame.camera.is_finite() {
         return wrong("camera", "holds NaN or infinity");
     }

@@ -87,6 +87,9 @@ impl Buffer {
     ///
     /// # Safety
     /// It is dropped when no pending work uses it, before the device.
+    ///
+    /// # Errors
+    /// [`Error::MissingFeature`] where no set can bind so large a one; [`Error::Vulkan`] where a call fails.
     pub(crate) unsafe fn new(
         context: &Context,
         allocator: &SharedAllocator,
@@ -94,6 +97,9 @@ impl Buffer {
         (size, location): (vk::DeviceSize, MemoryLocation),
     ) -> Result<Self, Error> {
         let device = &context.device;
+        if usage.contains(vk::BufferUsageFlags::STORAGE_BUFFER) {
+            context.limits.check_range(size, "a buffer of AreaLights")?;
+        }
         let info = vk::BufferCreateInfo::default().size(size).usage(usage);
         // SAFETY: the device is valid by the contract of Context::new, here and below.
         let raw = unsafe { device.create_buffer(&info, None) }.call("vkCreateBuffer")?;

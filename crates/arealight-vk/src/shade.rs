@@ -36,7 +36,7 @@ pub struct ShadePassInfo {
     pub table_size: u32,
     /// A module that the host compiled from the kernel's sources, for a G-buffer of its own
     /// (docs/embed-glsl.md), in which case [`ShadeOptions::g_buffer`] does not count; or one that asks the
-    /// host what part of each light arrives (docs/shadows.md). By default the kernel's own.
+    /// host what part of each light arrives (docs/embed-shadows.md). By default the kernel's own.
     pub module: Option<Vec<u32>>,
     /// The module of the kernel `classify` that goes with `module`, with tiles.
     pub tile_module: Option<Vec<u32>>,
@@ -102,13 +102,12 @@ impl ShadePass {
         check_options(options)?;
         let shade = module_of(&SHADE, options, module.as_deref())?;
         // Frames without tiles have none of their bindings
-        let is_whole = tiles.is_some() || context.whole_modules;
         let is_used = |name| match name {
             LIGHT_COUNTS => options.light_counts,
-            name => !TILE_BINDINGS.contains(&name),
+            name => tiles.is_some() || !TILE_BINDINGS.contains(&name),
         };
-        let bindings = SHADE.bindings().iter().filter(|binding| is_whole || is_used(binding.name));
-        let bindings = bindings.copied().collect();
+        let bindings = SHADE.bindings().iter().copied();
+        let bindings = bindings.filter(|binding| context.whole_modules || is_used(binding.name)).collect();
         // SAFETY: the same contract; what is no module of the kernel was refused.
         unsafe {
             let layouts = Layouts::with(context, &SHADE, bindings, (descriptors, host_set))?;
@@ -222,9 +221,10 @@ impl ShadePass {
     ///   use without a barrier between.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] names the field of `frame` that is wrong, or (in debug builds) the resource
-    /// that its lights need and the set was written without; [`Error::Vulkan`] where a pipeline cannot be
-    /// made. Then nothing is recorded.
+    /// [`Error::InvalidArgument`] names the field of `frame` that is wrong, or the resource that its lights
+    /// need and the set was written without; [`Error::MissingFeature`] where a buffer for so many pixels is
+    /// larger than the device binds; [`Error::Vulkan`] where a pipeline cannot be made. Then nothing is
+    /// recorded.
     pub unsafe fn record<'a>(
         &self,
         command_buffer: vk::CommandBuffer,
@@ -312,6 +312,8 @@ impl ShadePass {
         let view = view_of(self.options, frame)?;
         check_lights(frame.lights)?;
         group_rows(frame)?;
+        let limits = self.pipelines.layouts().context().limits;
+        limits.check_range(self.picks_size(frame.size), "the buffer of shadow picks")?;
         Ok(ShadeConstants {
             position_from_clip: view.position_from_clip.to_cols_array_2d(),
             camera: view.camera,
@@ -382,7 +384,7 @@ fn check_options(options: ShadeOptions) -> Result<(), Error> {
 }
 
 /// Refuses an inconsistent summary of packed lights.
-fn check_lights(lights: LightSummary) -> Result<(), Error> {
+pub(crate) fn check_lights(lights: LightSummary) -> Result<(), Error> {
     let wrong = |message: String| Err(Error::InvalidArgument { field: "lights", message });
     let LightSummary { light_count, quad_count, shape_count, effects } = lights;
     if quad_count > light_count {

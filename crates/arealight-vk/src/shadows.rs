@@ -8,7 +8,7 @@ use crate::layouts::{Descriptors, Layouts};
 use crate::module::check_module;
 use crate::pipelines::Pipelines;
 use crate::resource::Resource;
-use crate::shade::{Bound, ResourceAccess, ShadeResources, accesses_of};
+use crate::shade::{Bound, ResourceAccess, ShadeResources, accesses_of, check_lights};
 use crate::view::{View, check_view, view_of};
 use arealight::gpu::ShadowConstants;
 use arealight::kernels::{Binding, SHADOW_FILTER, SHADOW_HISTORY, SHADOW_RAYS, store_to};
@@ -37,7 +37,7 @@ pub struct ShadowPassInfo {
     /// What is done with their radiance.
     pub shadows: ShadowOptions,
     /// A module that the host compiled from the kernel `shadow_rays.comp` with its own answer to what blocks
-    /// a ray (docs/shadows.md): a shadow map, an acceleration structure. By default rays meet
+    /// a ray (docs/embed-shadows.md): a shadow map, an acceleration structure. By default rays meet
     /// [`ShadowResources::blockers`].
     pub module: Option<Vec<u32>>,
     /// The layout of descriptor set 1, where what that module reads is.
@@ -315,15 +315,7 @@ impl ShadowPass {
         resources: &ShadowResources,
         frame: &ShadowFrame<'_>,
     ) -> Result<ReadyFrame, Error> {
-        self.rays.layouts().check_host_set(bound.host_set())?;
-        let sets = match bound {
-            Bound::Set(set) => vec![set],
-            Bound::Sets(sets) => sets.to_vec(),
-            Bound::Pushed { .. } => {
-                let message = "are given, but shadow passes take sets".into();
-                return Err(Error::InvalidArgument { field: "resources", message });
-            }
-        };
+        let sets = bound.sets(self.rays.layouts())?;
         let view = view_of(self.options, frame.shade)?;
         if frame.shade.rows.is_some() {
             let message = "are a part of the frame, but shadows are of all of it: record its parts by the \
@@ -332,10 +324,14 @@ impl ShadowPass {
         }
         let head = self.history_head(resources, frame, &view)?;
         let ShadeFrame { seed, size, lights, .. } = *frame.shade;
+        check_lights(lights)?;
+        if head.is_some() {
+            let limits = self.rays.layouts().context().limits;
+            limits.check_range(plan::shadow_history_size(size), "the history of shadows")?;
+        }
         let position_from_clip = view.position_from_clip.to_cols_array_2d();
         let constants = ShadowConstants { position_from_clip, camera: view.camera, seed, size };
         let groups = SHADOW_RAYS.groups_for([size[0], size[1], 1]);
-        self.rays.layouts().check_set(sets[0])?;
         self.rays.check(bytemuck::bytes_of(&constants), groups)?;
         self.prepare(lights)?;
         Ok(ReadyFrame { sets, constants, groups, head, lights })

@@ -5,6 +5,7 @@ use crate::frame::ShadeFrame;
 use crate::layouts::Layouts;
 use crate::pipelines::Pipelines;
 use crate::resource::Resource;
+use crate::shadows::COPIED;
 use arealight::LightSummary;
 use arealight::gpu::ShadeConstants;
 use arealight::kernels::CLASSIFY;
@@ -97,6 +98,8 @@ impl Tiles {
         if !self.options.classifies(frame.lights) {
             return Ok(None);
         }
+        let limits = self.classify.layouts().context().limits;
+        limits.check_range(self.memory(frame.size).size, "the buffer of tile lists")?;
         let constants = ShadeConstants {
             capacity: self.options.capacity,
             horizon_cells: self.horizon_cells,
@@ -152,22 +155,11 @@ impl Tiles {
         unsafe {
             self.record_no_tiles(command_buffer, frame);
             bind();
-            context.record_barrier(
-                command_buffer,
-                (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE),
-                (compute, read | write),
-            );
+            context.record_barrier(command_buffer, COPIED, (compute, read | write));
             self.classify.with(self.classify_constants(options, frame), |pass| {
                 pass.record_rows(command_buffer, bytes, (groups, frame.rows.clone()));
             })?;
-            context.record_barrier(
-                command_buffer,
-                (compute, write),
-                (
-                    compute | vk::PipelineStageFlags::DRAW_INDIRECT,
-                    read | vk::AccessFlags::INDIRECT_COMMAND_READ,
-                ),
-            );
+            context.record_barrier(command_buffer, (compute, write), READ_INDIRECTLY);
             for class in dispatched(options, frame) {
                 let place = offset + class as u64 * 4 * tiles::CLASS_WORDS as u64;
                 let specialization = plan::shade_tiles_specialization(options, frame.lights, class);
@@ -179,18 +171,32 @@ impl Tiles {
         Ok(())
     }
 
-    /// Begins every class without a tile.
+    /// Begins every class without a tile, when the frame or part before has read its own.
     ///
     /// # Safety
-    /// As [`Tiles::record`]: the buffer holds as much, and nothing else uses it now.
+    /// As [`Tiles::record`]: the buffer holds as much.
     unsafe fn record_no_tiles(&self, command_buffer: vk::CommandBuffer, frame: &TiledFrame) {
         let none = [tiles::NO_TILES; TileClass::ALL.len()];
         let (buffer, offset) = frame.lists;
-        let device = self.classify.layouts().context().device();
+        let context = self.classify.layouts().context();
         // SAFETY: the same contract.
-        unsafe { device.cmd_update_buffer(command_buffer, buffer, offset, bytemuck::cast_slice(&none)) };
+        unsafe {
+            context.record_barrier(command_buffer, READ_INDIRECTLY, COPIED);
+            let none = bytemuck::cast_slice(&none);
+            context.device().cmd_update_buffer(command_buffer, buffer, offset, none);
+        }
     }
 }
+
+/// How the lists of a frame are read: by what shades, and by its indirect dispatches.
+const READ_INDIRECTLY: (vk::PipelineStageFlags, vk::AccessFlags) = (
+    vk::PipelineStageFlags::from_raw(
+        vk::PipelineStageFlags::COMPUTE_SHADER.as_raw() | vk::PipelineStageFlags::DRAW_INDIRECT.as_raw(),
+    ),
+    vk::AccessFlags::from_raw(
+        vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::INDIRECT_COMMAND_READ.as_raw(),
+    ),
+);
 
 /// The classes whose tiles have pixels to write.
 fn dispatched(options: ShadeOptions, frame: &TiledFrame) -> impl Iterator<Item = TileClass> {

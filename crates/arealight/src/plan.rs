@@ -305,7 +305,7 @@ pub struct MediumOptions {
     /// there. For hosts that filter over frames.
     pub one_light: bool,
     /// At how many points of a froxel light is scattered, each with rays of its own. From 1, as which 0
-    /// counts.
+    /// counts, to [`MediumOptions::MOST_SAMPLES`].
     pub samples: u32,
     /// Whether scattering and extinction come from an image, a texel a froxel; else they are the frame's.
     pub by_image: bool,
@@ -324,6 +324,11 @@ pub struct MediumOptions {
     pub format: RadianceFormat,
     /// Of it the form factor and how images are looked up.
     pub quality: Quality,
+}
+
+impl MediumOptions {
+    /// The most [`MediumOptions::samples`].
+    pub const MOST_SAMPLES: u32 = 64;
 }
 
 impl Default for MediumOptions {
@@ -346,7 +351,7 @@ impl Default for MediumOptions {
 /// The values of the constants of [`kernels::MEDIUM_SCATTER`], for a frame's lights.
 pub fn medium_scatter_specialization(options: MediumOptions, lights: LightSummary) -> Vec<(u32, u32)> {
     let rays = if options.one_light { 1 } else { 2 };
-    let has_lists = lights.light_count + lights.shape_count >= options.least_lights;
+    let has_lists = lights.light_count.saturating_add(lights.shape_count) >= options.least_lights;
     vec![
         (kernels::constant::EFFECTS, lights.effects.bits()),
         (kernels::constant::FOOTPRINT, options.quality.footprint as u32),

@@ -128,6 +128,9 @@
 #ifndef AREALIGHT_SOLID_ANGLES
 #define AREALIGHT_SOLID_ANGLES AREALIGHT_MEDIA
 #endif
+#if AREALIGHT_MEDIA && !AREALIGHT_SOLID_ANGLES
+#error AREALIGHT_MEDIA needs AREALIGHT_SOLID_ANGLES: leave that undefined, or define it as 1
+#endif
 
 // The kinds of lights that arealight.glsl includes.
 #ifndef AREALIGHT_QUADS

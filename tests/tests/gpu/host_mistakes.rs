@@ -52,6 +52,7 @@ unsafe extern "system" fn least(_: vk::PhysicalDevice, properties: *mut vk::Phys
         max_per_stage_descriptor_sampled_images: 16,
         max_per_stage_descriptor_storage_images: 4,
         max_per_stage_descriptor_storage_buffers: 4,
+        max_storage_buffer_range: 1 << 27,
         max_compute_work_group_count: [65535; 3],
         ..Default::default()
     };
@@ -88,6 +89,13 @@ fn what_a_device_lacks_is_named() {
         let error = ComputePass::new(&context_of_least, &VISIBILITY, &[]).unwrap_err();
         let Error::MissingFeature { feature, needed_by } = error else { panic!("{error}") };
         assert_eq!((feature, needed_by), ("maxPerStageDescriptorStorageImages", "visibility"));
+        // Five words of picks for each of so many pixels are more than it binds
+        let rays = ShadeOptions { shadow_rays: 2, ..ShadeOptions::default() };
+        let pass = ShadePass::new(&context_of_least, rays).unwrap();
+        let frame = |size| ShadeFrame { size, ..ShadeFrame::default() };
+        let record = |size| pass.record(Default::default(), vk::DescriptorSet::null(), &frame(size));
+        let error = record([4096, 2048]).unwrap_err();
+        assert!(matches!(error, Error::MissingFeature { feature: "maxStorageBufferRange", .. }), "{error}");
     }
 
     let formats = (c"vkGetPhysicalDeviceFormatProperties", no_format as *const c_void);

@@ -3,9 +3,11 @@
 
 use crate::shadows::{flat, options, surfaces, symmetric_lights};
 use arealight_engine::host::{Buffer, OwnSet};
+use arealight_tests::c_library::prelude::*;
 use arealight_tests::kernel::{shade_with_visibility, shadow_rays_with_bridge};
 use arealight_tests::prelude::*;
 use arealight_tests::shadow_patch::{PatchPasses, SIDE, ShadowPatch};
+use ash::vk::Handle as _;
 
 /// Rays that ask a host by this macro of the examples, who reads a buffer, and a patch behind blockers.
 fn asking<'a>(
@@ -103,4 +105,19 @@ fn a_host_multiplies_each_light_with_what_its_shadow_maps_say() {
         // The twin: the halves differ
         assert_ne!(found[0], found[SIDE as usize - 1], "{surface}");
     }
+    // Through the C library, of a pixel in the left half
+    let (library, pixel) = (CLibrary::with_table(&engine), OnePixel::new(&engine, Vec4::W, 1.0));
+    let shade = |module: ArealightModule| {
+        let pass = library.pass_with(&ArealightPassOptions { module, ..ArealightPassOptions::default() });
+        let found = library.shade(pass, &pixel, &[c_lamp(&lights[0])], ArealightImage::default(), Vec3::Z);
+        // SAFETY: nothing is pending.
+        good(unsafe { arealight_pass_destroy(pass) });
+        found.truncate()
+    };
+    let plain = shade(ArealightModule::default());
+    library.host_set.set(own.set.as_raw());
+    let words = shade_with_visibility();
+    let (size, host_set_layout) = (size_of_val(&words[..]), own.layout.as_raw());
+    let found = shade(ArealightModule { words: words.as_ptr(), size, host_set_layout });
+    assert!(plain.min_element() > 0.0 && found == plain * 0.25, "{found} of {plain}");
 }

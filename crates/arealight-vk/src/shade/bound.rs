@@ -1,6 +1,8 @@
 //! The descriptors of a frame's commands.
 
 use super::ShadeResources;
+use crate::error::Error;
+use crate::layouts::Layouts;
 use ash::vk;
 
 /// The descriptors of a frame: sets, or resources to push.
@@ -33,5 +35,20 @@ impl Bound<'_> {
             Self::Sets([_, host_set]) => Some(host_set),
             Self::Pushed { host_set, .. } => host_set,
         }
+    }
+
+    /// The sets, of a pass that takes nothing else, checked.
+    pub(crate) fn sets(&self, layouts: &Layouts) -> Result<Vec<vk::DescriptorSet>, Error> {
+        layouts.check_host_set(self.host_set())?;
+        let sets = match *self {
+            Self::Set(set) => vec![set],
+            Self::Sets(sets) => sets.to_vec(),
+            Self::Pushed { .. } => {
+                let message = "are given, but passes of shadows and media take sets".into();
+                return Err(Error::InvalidArgument { field: "resources", message });
+            }
+        };
+        layouts.check_set(sets[0])?;
+        Ok(sets)
     }
 }
