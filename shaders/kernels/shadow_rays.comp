@@ -201,10 +201,13 @@ vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec2 rand
     if ((point.to_frame * ray.direction).z <= 0.0) {
         return vec2(0.0);
     }
-    float end = ray.distance * AREALIGHT_RAY_PART;
-    float blocker = arealight_bridge_blocker(origin, ray.direction, end);
+    // From the origin, which is not the position, to the same place of the light
+    vec3 way = ray.distance * ray.direction + (point.position - origin);
+    float distance = max(length(way), 1e-37);
+    float end = distance * AREALIGHT_RAY_PART;
+    float blocker = arealight_bridge_blocker(origin, way / distance, end);
     bool is_hidden = blocker < end;
-    float width = penumbra_width(light, blocker / ray.distance, ray.distance, is_specular ? alpha : 1e9);
+    float width = penumbra_width(light, blocker / distance, distance, is_specular ? alpha : 1e9);
     return vec2(is_hidden ? 0.0 : 1.0, is_hidden ? width : 0.0);
 }
 

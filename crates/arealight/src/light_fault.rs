@@ -32,7 +32,7 @@ pub enum LightFault {
         count: usize,
     },
     /// A vertex is NaN, infinite, or farther from the origin than float32 reaches.
-    #[error("vertices[{index}]: {value} is not a finite float32 position")]
+    #[error("vertices[{index}]: {value} is not a finite float32 position relative to the origin")]
     VertexNotFinite {
         /// The vertex.
         index: usize,
@@ -83,7 +83,9 @@ pub enum LightFault {
         count: usize,
     },
     /// A hole's vertex is NaN, infinite, or farther from the origin than float32 reaches.
-    #[error("holes[{hole}]: vertices[{index}]: {value} is not a finite float32 position")]
+    #[error(
+        "holes[{hole}]: vertices[{index}]: {value} is not a finite float32 position relative to the origin"
+    )]
     HoleVertexNotFinite {
         /// The hole.
         hole: usize,

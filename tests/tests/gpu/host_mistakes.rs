@@ -93,7 +93,7 @@ fn what_a_device_lacks_is_named() {
         let rays = ShadeOptions { shadow_rays: 2, ..ShadeOptions::default() };
         let pass = ShadePass::new(&context_of_least, rays).unwrap();
         let frame = |size| ShadeFrame { size, ..ShadeFrame::default() };
-        let record = |size| pass.record(Default::default(), vk::DescriptorSet::null(), &frame(size));
+        let record = |size| pass.record(vk::CommandBuffer::null(), vk::DescriptorSet::null(), &frame(size));
         let error = record([4096, 2048]).unwrap_err();
         assert!(matches!(error, Error::MissingFeature { feature: "maxStorageBufferRange", .. }), "{error}");
     }

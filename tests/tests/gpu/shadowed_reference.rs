@@ -243,6 +243,8 @@ fn a_lamp_hides_the_light_of_others_and_not_its_own() {
             (tube(TubeEnds::Open), rod(1.12), rod(2.2)),
             (tube(TubeEnds::Round), rod(1.12), rod(2.2)),
             (quad(2.0).shape, quad_faces(2.0), quad_faces(1.99)),
+            // So near that a ray's origin is higher than its end is before the light
+            (quad(0.05).shape, quad_faces(0.05), quad_faces(0.04)),
         ] {
             let (own, other) = (light(shape), quad(3.0));
             let view = seen(&lamp);

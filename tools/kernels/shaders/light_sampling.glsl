@@ -44,12 +44,15 @@ vec3 triangle_normal(ArealightGpuLightSampling sampling, vec3 a, vec3 b, vec3 c)
 // Uniform by area.
 LightPoint sample_point(ArealightGpuLightSampling sampling, inout RandomState random) {
     float choice = random_float(random);
-    uint index = sampling.first_triangle;
-    uint last = index + sampling.triangle_count - 1u;
-    while (index < last && choice >= light_triangles[index].cumulative) {
-        index++;
+    uint first = sampling.first_triangle;
+    uint last = first + sampling.triangle_count - 1u;
+    while (first < last) {
+        uint middle = (first + last) / 2u;
+        bool is_after = choice >= light_triangles[middle].cumulative;
+        first = is_after ? middle + 1u : first;
+        last = is_after ? last : middle;
     }
-    ArealightGpuLightTriangle triangle = light_triangles[index];
+    ArealightGpuLightTriangle triangle = light_triangles[first];
     vec3 a = arealight_bridge_vertex(triangle.vertex0);
     vec3 b = arealight_bridge_vertex(triangle.vertex1);
     vec3 c = arealight_bridge_vertex(triangle.vertex2);

@@ -293,7 +293,8 @@ pub(crate) fn slice(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
 /// The JSON text and the binary chunk of a file.
 fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     if !bytes.starts_with(b"glTF") {
-        return Ok((bytes, None));
+        let is_json = bytes.trim_ascii_start().first() == Some(&b'{');
+        return is_json.then_some((bytes, None)).ok_or("it is neither binary glTF nor a JSON object".into());
     }
     let word = |at: usize| {
         bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).ok_or("it is cut short")

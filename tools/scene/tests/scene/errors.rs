@@ -25,8 +25,8 @@ fn files_that_are_not_gltf() {
     let mut long = good.clone();
     long[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
     for (bytes, text) in [
-        (&b""[..], "EOF"),
-        (b"hello", "expected"),
+        (&b""[..], "neither binary glTF nor"),
+        (b"hello", "nor a JSON object"),
         (b"{}", "missing field `asset`"),
         (br#"{"asset":{"version":"1.0"}}"#, "asset.version is '1.0'"),
         (b"glTF", "cut short"),
