@@ -3,7 +3,7 @@
 mod place;
 mod textures;
 
-use crate::context::Context;
+use crate::context::{COPIED, Context, USED, WRITTEN};
 use crate::error::{Error, VulkanCall};
 use crate::frame::ShadeFrame;
 use crate::light_textures::TextureUpdate;
@@ -11,7 +11,7 @@ use crate::medium::{MediumFrame, MediumPass, MediumPassInfo};
 use crate::memory::{Buffer, Memory, SharedAllocator};
 use crate::resource::Resource;
 use crate::shade::{Bound, ShadePass, ShadePassInfo, ShadeResources};
-use crate::shadows::{COPIED, ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo, USED, WRITTEN};
+use crate::shadows::{ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo};
 use crate::table_image::{TableFormat, TableImage};
 use arealight::plan::{MediumOptions, Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
 use arealight::{Blockers, Light, LightTable, PackedLights, PyramidSize};

@@ -7,6 +7,16 @@ use crate::written_sets::WrittenSets;
 use ash::vk;
 use std::ops::Range;
 
+/// What a copy or a dispatch wrote, and what the next dispatch may do with it.
+pub(crate) const COPIED: (vk::PipelineStageFlags, vk::AccessFlags) =
+    (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
+pub(crate) const WRITTEN: (vk::PipelineStageFlags, vk::AccessFlags) =
+    (vk::PipelineStageFlags::COMPUTE_SHADER, vk::AccessFlags::SHADER_WRITE);
+pub(crate) const USED: (vk::PipelineStageFlags, vk::AccessFlags) = (
+    vk::PipelineStageFlags::COMPUTE_SHADER,
+    vk::AccessFlags::from_raw(vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw()),
+);
+
 /// The recorder's view of the host's device, from which passes are made. Cheap to clone.
 #[derive(Clone)]
 pub struct Context {

@@ -1,13 +1,13 @@
 //! A medium before a picture: fog, smoke, haze.
 
-use crate::context::Context;
+use crate::context::{Context, USED, WRITTEN};
 use crate::error::Error;
 use crate::layouts::{Descriptors, Layouts};
 use crate::module::check_module;
 use crate::pipelines::Pipelines;
 use crate::resource::Resource;
 use crate::shade::{Bound, ResourceAccess, ShadeResources, accesses_of, check_lights};
-use crate::shadows::{BlockerResources, USED, WRITTEN};
+use crate::shadows::BlockerResources;
 use arealight::gpu::MediumConstants;
 use arealight::kernels::{
     Binding, Kernel, MEDIUM_COMPOSE, MEDIUM_HIDE, MEDIUM_INTEGRATE, MEDIUM_SCATTER, store_to,

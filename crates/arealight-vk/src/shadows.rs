@@ -1,7 +1,7 @@
 //! Shadows: rays for the lights and lobes that the shade pass picked, and what their mean makes of its
 //! radiance.
 
-use crate::context::Context;
+use crate::context::{COPIED, Context, USED, WRITTEN};
 use crate::error::Error;
 use crate::frame::ShadeFrame;
 use crate::layouts::{Descriptors, Layouts};
@@ -423,16 +423,6 @@ struct HistoryHead {
     offset: vk::DeviceSize,
     words: [f32; plan::SHADOW_HISTORY_HEAD / 2],
 }
-
-/// What a copy or a dispatch wrote, and what the next dispatch may do with it.
-pub(crate) const COPIED: (vk::PipelineStageFlags, vk::AccessFlags) =
-    (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
-pub(crate) const WRITTEN: (vk::PipelineStageFlags, vk::AccessFlags) =
-    (vk::PipelineStageFlags::COMPUTE_SHADER, vk::AccessFlags::SHADER_WRITE);
-pub(crate) const USED: (vk::PipelineStageFlags, vk::AccessFlags) = (
-    vk::PipelineStageFlags::COMPUTE_SHADER,
-    vk::AccessFlags::from_raw(vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw()),
-);
 
 fn check_rays(options: ShadeOptions) -> Result<(), Error> {
     check_view(options)?;

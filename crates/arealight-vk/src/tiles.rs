@@ -1,11 +1,11 @@
 //! Tiles of the shade pass: how they are classified, and how the classes are shaded.
 
+use crate::context::COPIED;
 use crate::error::Error;
 use crate::frame::ShadeFrame;
 use crate::layouts::Layouts;
 use crate::pipelines::Pipelines;
 use crate::resource::Resource;
-use crate::shadows::COPIED;
 use arealight::LightSummary;
 use arealight::gpu::ShadeConstants;
 use arealight::kernels::CLASSIFY;
