@@ -8,7 +8,7 @@ use crate::error::{Error, VulkanCall};
 use crate::frame::ShadeFrame;
 use crate::light_textures::TextureUpdate;
 use crate::medium::{MediumFrame, MediumPass, MediumPassInfo};
-use crate::memory::{Buffer, Memory, SharedAllocator};
+use crate::memory::{Buffer, Memory, SharedAllocator, holding, mapped};
 use crate::resource::Resource;
 use crate::shade::{Bound, ShadePass, ShadePassInfo, ShadeResources};
 use crate::shadows::{ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo};
@@ -473,35 +473,4 @@ fn descriptor_sets(
             }
         }
     }
-}
-
-/// The least size of a buffer: a record of any kind of light.
-const LEAST: vk::DeviceSize = 64;
-
-/// A mapped buffer of these bytes, for shaders and copies.
-///
-/// # Safety
-/// As [`Buffer::new`].
-unsafe fn mapped(context: &Context, allocator: &SharedAllocator, bytes: &[u8]) -> Result<Buffer, Error> {
-    // SAFETY: the same contract.
-    unsafe { holding(context, allocator, bytes, MemoryLocation::CpuToGpu) }
-}
-
-/// A buffer for these bytes, for shaders and copies, which has them where it is mapped.
-///
-/// # Safety
-/// As [`Buffer::new`].
-unsafe fn holding(
-    context: &Context,
-    allocator: &SharedAllocator,
-    bytes: &[u8],
-    location: MemoryLocation,
-) -> Result<Buffer, Error> {
-    let copies = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER | copies;
-    let size = (bytes.len() as vk::DeviceSize).max(LEAST);
-    // SAFETY: the same contract.
-    let mut buffer = unsafe { Buffer::new(context, allocator, usage, (size, location)) }?;
-    buffer.write(bytes);
-    Ok(buffer)
 }

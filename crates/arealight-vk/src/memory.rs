@@ -133,6 +133,41 @@ impl Drop for Buffer {
     }
 }
 
+/// The least size of a buffer: a record of any kind of light.
+pub(crate) const LEAST: vk::DeviceSize = 64;
+
+/// A mapped buffer of these bytes, for shaders and copies.
+///
+/// # Safety
+/// As [`Buffer::new`].
+pub(crate) unsafe fn mapped(
+    context: &Context,
+    allocator: &SharedAllocator,
+    bytes: &[u8],
+) -> Result<Buffer, Error> {
+    // SAFETY: the same contract.
+    unsafe { holding(context, allocator, bytes, MemoryLocation::CpuToGpu) }
+}
+
+/// A buffer for these bytes, for shaders and copies, which has them where it is mapped.
+///
+/// # Safety
+/// As [`Buffer::new`].
+pub(crate) unsafe fn holding(
+    context: &Context,
+    allocator: &SharedAllocator,
+    bytes: &[u8],
+    location: MemoryLocation,
+) -> Result<Buffer, Error> {
+    let copies = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER | copies;
+    let size = (bytes.len() as vk::DeviceSize).max(LEAST);
+    // SAFETY: the same contract.
+    let mut buffer = unsafe { Buffer::new(context, allocator, usage, (size, location)) }?;
+    buffer.write(bytes);
+    Ok(buffer)
+}
+
 /// An image that shaders store to, with memory.
 pub(crate) struct StoredImage {
     pub(crate) image: Image,

@@ -45,7 +45,7 @@ impl Sight<'_> {
         rows.flat_map(move |row| columns.clone().map(move |column| [column, row]))
     }
 
-    /// Whether a pixel shows several materials, of which one is far brighter.
+    /// Whether a pixel shows several materials, and one is far brighter than the others.
     fn is_bright(&self, pixel: [u32; 2], size: [u32; 2], (picture, stops): (&Picture, f32)) -> bool {
         let near = || self.near(pixel, size, 1).map(|[column, row]| (row * picture.width + column) as usize);
         let mut materials = near().map(|sample| self.materials[sample]);

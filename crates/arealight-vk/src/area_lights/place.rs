@@ -1,10 +1,9 @@
 //! What each frame in flight has for itself.
 
-use super::{LEAST, mapped};
 use crate::context::Context;
 use crate::error::Error;
 use crate::medium::{MediumPass, MediumResources};
-use crate::memory::{Buffer, SharedAllocator, StoredImage};
+use crate::memory::{Buffer, LEAST, SharedAllocator, StoredImage, mapped};
 use crate::resource::Resource;
 use crate::shade::{ShadePass, ShadeResources};
 use crate::shadows::{BlockerResources, ShadowPass, ShadowResources};
