@@ -9,8 +9,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// Of a kind of light, with its shadows: processor time, in units of [`yardstick`]. A second
-/// driver takes up to 14.
+/// Of a kind of light, with its shadows: processor time, in units of [`yardstick`], which varies by an
+/// eighth. A second driver takes up to 12.
 const UNITS: f64 = 20.0;
 /// Of the process at its largest, in MB. About 170 of them are a driver without any pipeline.
 const MEGABYTES: f64 = 500.0;
@@ -35,18 +35,20 @@ fn used(process: u32) -> Option<Used> {
     Some(Used { seconds: (ticks(11)? + ticks(12)?) / 100.0, megabytes: kilobytes / 1e3 })
 }
 
-/// Processor time, in seconds, of work as a compiler's: small allocations, in maps that outgrow caches.
+/// Processor time, in seconds, of work as a compiler's: small allocations, in maps that caches hold. In
+/// larger maps it varies by a third on a shared machine, and a compiler's time does not.
 fn yardstick() -> f64 {
     let began = used(std::process::id()).expect("this process runs").seconds;
-    let mut users: BTreeMap<u64, Vec<u64>> = BTreeMap::new();
     let mut name = 1_u64;
-    for value in 0..500_000 {
-        name = name.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        users.entry(name >> 43).or_default().push(value);
+    for _ in 0..200 {
+        let mut users: BTreeMap<u64, Vec<u64>> = BTreeMap::new();
+        for value in 0..20_000 {
+            name = name.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            users.entry(name >> 51).or_default().push(value);
+        }
+        let sum: u64 = users.values().map(|values| values.iter().sum::<u64>()).sum();
+        assert_eq!(sum, 20_000 * 19_999 / 2);
     }
-    let sum: u64 = users.values().map(|values| values.iter().sum::<u64>()).sum();
-    assert_eq!(sum, 500_000 * 499_999 / 2);
-    drop(users);
     used(std::process::id()).expect("this process runs").seconds - began
 }
 
@@ -79,7 +81,7 @@ fn pipelines_of_every_kind_of_light_compile_within_a_budget() {
         ("sweep.glb", 1.0),     // quads
         ("room.glb", 1.0),      // concave polygons and polygons of many corners
         ("screen.glb", 1.0),    // images
-        ("shapes.glb", 3.0),    // disks, spheres and tubes
+        ("shapes.glb", 4.0),    // disks, spheres, and tubes as lines and as outlines
         ("materials.glb", 1.0), // coats, sheen, two roughnesses
     ] {
         let Used { seconds, megabytes } = render(scene);
