@@ -3,7 +3,7 @@
 use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
 use crate::options::{flag, level, shade_options};
-use crate::pass::{bound, given, host_module, read_frame, read_resources, sampled, set_layout, stored};
+use crate::pass::{blockers, bound, host_module, read_frame, read_resources, sampled, set_layout, stored};
 use crate::types::{
     ArealightBuffer, ArealightFrame, ArealightImage, ArealightModule, ArealightPassOptions,
     ArealightResources, ArealightSetLayout,
@@ -11,7 +11,7 @@ use crate::types::{
 use crate::{arguments, handles};
 use arealight::plan::{MediumOptions, ShadeOptions};
 use arealight_vk::ash::vk::{self, Handle as _};
-use arealight_vk::{BlockerResources, MediumFrame, MediumPass, MediumPassInfo, MediumResources, ShadeFrame};
+use arealight_vk::{MediumFrame, MediumPass, MediumPassInfo, MediumResources, ShadeFrame};
 use glam::{Mat4, Vec3};
 use std::ffi::c_void;
 
@@ -163,11 +163,10 @@ pub unsafe extern "C" fn arealight_medium_pass_write_set(
         arguments::refuse_null([(set == 0, "set")])?;
         let shade = read_resources(arealight.table_resource()?, arguments::read(shade, "shade")?)?;
         let resources = arguments::read(resources, "resources")?;
-        let blockers = given(resources.blocker_nodes).zip(given(resources.blocker_triangles));
         let resources = MediumResources {
             froxels: stored(resources.froxels),
             medium: (resources.medium.view != 0).then(|| sampled(resources.medium)),
-            blockers: blockers.map(|(nodes, triangles)| BlockerResources { nodes, triangles }),
+            blockers: blockers(resources.blocker_nodes, resources.blocker_triangles),
         };
         Ok(pass.write_set(vk::DescriptorSet::from_raw(set), &shade, &resources)?)
     })

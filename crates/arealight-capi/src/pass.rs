@@ -12,7 +12,8 @@ use crate::{arguments, handles};
 use arealight::{Plane, Planes};
 use arealight_vk::ash::vk::{self, Handle as _};
 use arealight_vk::{
-    Bound, Descriptors, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources, StencilTest, Viewport,
+    BlockerResources, Bound, Descriptors, Resource, ShadeFrame, ShadePass, ShadePassInfo, ShadeResources,
+    StencilTest, Viewport,
 };
 use glam::{Mat4, Vec3};
 use std::ffi::c_void;
@@ -197,6 +198,11 @@ fn filtered(image: ArealightImage) -> Resource {
 fn buffer(buffer: ArealightBuffer) -> Resource {
     let ArealightBuffer { buffer, offset, range } = buffer;
     Resource::StorageBuffer { buffer: vk::Buffer::from_raw(buffer), offset, range }
+}
+
+/// A hierarchy's two buffers, unless one is 0.
+pub(crate) fn blockers(nodes: ArealightBuffer, triangles: ArealightBuffer) -> Option<BlockerResources> {
+    given(nodes).zip(given(triangles)).map(|(nodes, triangles)| BlockerResources { nodes, triangles })
 }
 
 /// A buffer that may be 0.

@@ -4,7 +4,9 @@ use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
 use crate::lights::fill;
 use crate::options::{level, shade_options};
-use crate::pass::{ArealightPass, bound, given, host_module, read_frame, read_resources, set_layout, stored};
+use crate::pass::{
+    ArealightPass, blockers, bound, given, host_module, read_frame, read_resources, set_layout, stored,
+};
 use crate::types::{
     ArealightBlockerArrays, ArealightFrame, ArealightPassOptions, ArealightResources, ArealightSetLayout,
     ArealightShadowFrame, ArealightShadowOptions, ArealightShadowResources,
@@ -13,9 +15,7 @@ use crate::{arguments, handles};
 use arealight::plan::{self, Output, ShadowFilter, ShadowHistory};
 use arealight::{BlockerError, Blockers};
 use arealight_vk::ash::vk::{self, Handle as _};
-use arealight_vk::{
-    BlockerResources, ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo, ShadowResources,
-};
+use arealight_vk::{ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo, ShadowResources};
 use bytemuck::cast_slice;
 use glam::Vec3;
 use std::ffi::c_void;
@@ -209,12 +209,11 @@ pub unsafe extern "C" fn arealight_shadow_pass_write_set(
 }
 
 fn read_shadow_resources(resources: &ArealightShadowResources) -> ShadowResources {
-    let blockers = given(resources.blocker_nodes).zip(given(resources.blocker_triangles));
     ShadowResources {
         shadow: stored(resources.shadow),
         radiance: (resources.radiance.view != 0).then(|| stored(resources.radiance)),
         history: given(resources.history),
-        blockers: blockers.map(|(nodes, triangles)| BlockerResources { nodes, triangles }),
+        blockers: blockers(resources.blocker_nodes, resources.blocker_triangles),
     }
 }
 

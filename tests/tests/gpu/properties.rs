@@ -60,43 +60,35 @@ fn assert_relations(engine: &TestEngine, path: Path, table: Option<&LightTable>,
     }
 }
 
+/// What every kind of lobe keeps; the levels that kept it.
+fn assert_all_relations(engine: &TestEngine, table: Option<&LightTable>, horizon: Horizon) -> Vec<Level> {
+    PATHS.into_iter().for_each(|path| assert_relations(engine, path, table, horizon));
+    let levels = Level::of(&PATHS, &[horizon]);
+    boxes::a_box_of_lights_around_the_point_sums_to_one(engine, table, &levels);
+    scaling_by_a_power_of_two_changes_no_bit(engine, table, &levels);
+    quads_are_as_polygons(engine, table, horizon);
+    levels
+}
+
 #[test]
 fn lambert_lobes_keep_every_property() {
     let Some(engine) = TestEngine::new() else { return };
-    for path in PATHS {
-        assert_relations(&engine, path, None, Horizon::Cosine);
-    }
-    let levels = Level::of(&PATHS, &[Horizon::Cosine]);
-    boxes::a_box_of_lights_around_the_point_sums_to_one(&engine, None, &levels);
-    scaling_by_a_power_of_two_changes_no_bit(&engine, None, &levels);
+    let levels = assert_all_relations(&engine, None, Horizon::Cosine);
     degenerate_lights_are_dark(&engine, &levels);
-    quads_are_as_polygons(&engine, None, Horizon::Cosine);
     horizons::a_light_rises_without_a_jump(&engine, &levels);
 }
 
 #[test]
 fn glossy_lobes_clipped_once_keep_every_property() {
     let Some(engine) = TestEngine::new() else { return };
-    for path in PATHS {
-        assert_relations(&engine, path, Some(&TABLE), Horizon::Cosine);
-    }
-    let levels = Level::of(&PATHS, &[Horizon::Cosine]);
-    boxes::a_box_of_lights_around_the_point_sums_to_one(&engine, Some(&TABLE), &levels);
-    scaling_by_a_power_of_two_changes_no_bit(&engine, Some(&TABLE), &levels);
-    quads_are_as_polygons(&engine, Some(&TABLE), Horizon::Cosine);
+    assert_all_relations(&engine, Some(&TABLE), Horizon::Cosine);
     the_frame_holds_for_every_view_and_normal(&engine);
 }
 
 #[test]
 fn glossy_lobes_clipped_twice_keep_every_property() {
     let Some(engine) = TestEngine::new() else { return };
-    for path in PATHS {
-        assert_relations(&engine, path, Some(&TABLE), Horizon::Both);
-    }
-    let levels = Level::of(&PATHS, &[Horizon::Both]);
-    boxes::a_box_of_lights_around_the_point_sums_to_one(&engine, Some(&TABLE), &levels);
-    scaling_by_a_power_of_two_changes_no_bit(&engine, Some(&TABLE), &levels);
-    quads_are_as_polygons(&engine, Some(&TABLE), Horizon::Both);
+    let levels = assert_all_relations(&engine, Some(&TABLE), Horizon::Both);
     horizons::nothing_leaks_from_below_the_surface(&engine, &levels);
     horizons::clipping_twice_is_no_brighter(&engine);
 }

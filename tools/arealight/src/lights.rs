@@ -16,7 +16,7 @@ pub struct LightArguments {
     light_size: Option<f64>,
     /// Show the scene's animations and moving images at this time, in seconds; without it the scene is at
     /// rest
-    #[arg(long, value_name = "SECONDS", value_parser = parse_time, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_time)]
     time: Option<f64>,
     /// What lights the scene: what the file has (`file`), or that and three softboxes in a dim tent
     /// around what the camera sees, for models without lights (`studio`)

@@ -21,7 +21,7 @@ mod view;
 mod visible;
 mod whole_file;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Render, measure and export analytic area lights: a polygon, a material and a view go in; radiance comes
@@ -55,7 +55,7 @@ For example:
 Exit codes: 0 success, 1 an answer or a picture is farther from the truth than --tolerance allows, or a \
 level falls short of its promises in bench stability or misses a bar in bench textures, \
 or a kernel takes more than bench compiled --check allows, \
-2 wrong arguments, 3 a bad input file, 4 no usable Vulkan device, 5 an output file cannot be written, \
+2 wrong arguments, 3 a bad input file, 4 no usable Vulkan device or no window, 5 an output file cannot be written, \
 6 no compiler for bench compiled, or no matplotlib for charts and pictures of tables.";
 
 #[derive(Subcommand)]
@@ -75,8 +75,22 @@ enum Command {
     Man(commands::shell::Man),
 }
 
+/// The program's commands. A negative number is always a value: that it is out of range is said as such.
+fn program() -> clap::Command {
+    fn with_numbers(command: clap::Command) -> clap::Command {
+        let numbers = |of: clap::Arg| {
+            let takes = of.get_action().takes_values();
+            of.allow_negative_numbers(takes)
+        };
+        command.mut_args(numbers).mut_subcommands(with_numbers)
+    }
+    with_numbers(CommandLine::command())
+}
+
 fn main() -> ExitCode {
-    let CommandLine { quiet, verbose, memory, command } = CommandLine::parse();
+    let matches = program().get_matches();
+    let CommandLine { quiet, verbose, memory, command } =
+        CommandLine::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     memory::be_within(memory);
     if quiet {
         progress::be_quiet();
@@ -96,8 +110,8 @@ fn main() -> ExitCode {
         Command::Devices(arguments) => commands::devices::run(&arguments),
         Command::Export(arguments) => commands::export::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),
-        Command::Completions(arguments) => commands::shell::completions(&arguments, CommandLine::command()),
-        Command::Man(arguments) => commands::shell::man(&arguments, CommandLine::command()),
+        Command::Completions(arguments) => commands::shell::completions(&arguments, program()),
+        Command::Man(arguments) => commands::shell::man(&arguments, program()),
     };
     match result {
         Ok(code) => code,

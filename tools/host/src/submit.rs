@@ -2,53 +2,42 @@
 
 use crate::device::Host;
 use crate::error::{HostError, NameCall as _};
-use ash::vk;
+use ash::vk::{self, AccessFlags as Access, ImageLayout as Layout, PipelineStageFlags as Stage};
 use std::time::Duration;
 
 /// How something is used: the stage, the access and, of an image, the layout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Usage {
     /// The stage that uses it.
-    pub stage: vk::PipelineStageFlags,
+    pub stage: Stage,
     /// What that stage does.
-    pub access: vk::AccessFlags,
+    pub access: Access,
     /// The layout that an image is in; buffers ignore it.
-    pub layout: vk::ImageLayout,
+    pub layout: Layout,
 }
 
 impl Usage {
     /// Not used yet: an image's contents may be thrown away.
-    pub const UNDEFINED: Self = Self {
-        stage: vk::PipelineStageFlags::TOP_OF_PIPE,
-        access: vk::AccessFlags::NONE,
-        layout: vk::ImageLayout::UNDEFINED,
-    };
+    pub const UNDEFINED: Self = Self::of(Stage::TOP_OF_PIPE, Access::NONE, Layout::UNDEFINED);
     /// Copied from.
-    pub const COPY_SOURCE: Self = Self {
-        stage: vk::PipelineStageFlags::TRANSFER,
-        access: vk::AccessFlags::TRANSFER_READ,
-        layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
-    };
+    pub const COPY_SOURCE: Self =
+        Self::of(Stage::TRANSFER, Access::TRANSFER_READ, Layout::TRANSFER_SRC_OPTIMAL);
     /// Copied or cleared to.
-    pub const COPY_DESTINATION: Self = Self {
-        stage: vk::PipelineStageFlags::TRANSFER,
-        access: vk::AccessFlags::TRANSFER_WRITE,
-        layout: vk::ImageLayout::TRANSFER_DST_OPTIMAL,
-    };
+    pub const COPY_DESTINATION: Self =
+        Self::of(Stage::TRANSFER, Access::TRANSFER_WRITE, Layout::TRANSFER_DST_OPTIMAL);
     /// Read by a compute shader, an image as a sampled one.
-    pub const COMPUTE_READ: Self = Self {
-        stage: vk::PipelineStageFlags::COMPUTE_SHADER,
-        access: vk::AccessFlags::SHADER_READ,
-        layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
-    };
+    pub const COMPUTE_READ: Self =
+        Self::of(Stage::COMPUTE_SHADER, Access::SHADER_READ, Layout::SHADER_READ_ONLY_OPTIMAL);
     /// Read and written by a compute shader, an image as a storage image.
-    pub const COMPUTE_WRITE: Self = Self {
-        stage: vk::PipelineStageFlags::COMPUTE_SHADER,
-        access: vk::AccessFlags::from_raw(
-            vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw(),
-        ),
-        layout: vk::ImageLayout::GENERAL,
-    };
+    pub const COMPUTE_WRITE: Self = Self::of(
+        Stage::COMPUTE_SHADER,
+        Access::from_raw(Access::SHADER_READ.as_raw() | Access::SHADER_WRITE.as_raw()),
+        Layout::GENERAL,
+    );
+
+    const fn of(stage: Stage, access: Access, layout: Layout) -> Self {
+        Self { stage, access, layout }
+    }
 }
 
 impl Host {
@@ -189,16 +178,9 @@ impl<'a> Submission<'a> {
     /// Makes all writes visible to the CPU and to whatever comes later, submits, and waits.
     fn finish(&self) -> Result<(), HostError> {
         let device = self.host.device();
-        let everything = Usage {
-            stage: vk::PipelineStageFlags::ALL_COMMANDS,
-            access: vk::AccessFlags::MEMORY_WRITE,
-            layout: vk::ImageLayout::UNDEFINED,
-        };
-        let anything = Usage {
-            stage: vk::PipelineStageFlags::ALL_COMMANDS | vk::PipelineStageFlags::HOST,
-            access: vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE | vk::AccessFlags::HOST_READ,
-            layout: vk::ImageLayout::UNDEFINED,
-        };
+        let everything = Usage::of(Stage::ALL_COMMANDS, Access::MEMORY_WRITE, Layout::UNDEFINED);
+        let access = Access::MEMORY_READ | Access::MEMORY_WRITE | Access::HOST_READ;
+        let anything = Usage::of(Stage::ALL_COMMANDS | Stage::HOST, access, Layout::UNDEFINED);
         self.host.barrier(self.commands, everything, anything);
         // SAFETY: The command buffer is being recorded.
         unsafe { device.end_command_buffer(self.commands) }.named("vkEndCommandBuffer")?;

@@ -15,7 +15,12 @@ use serde::Deserialize;
 
 /// What `extras.arealight` of a node says: in the node's space, about its origin and its Y axis.
 #[derive(Deserialize)]
-#[serde(tag = "shape", rename_all = "lowercase", deny_unknown_fields)]
+#[serde(
+    tag = "shape",
+    rename_all = "lowercase",
+    deny_unknown_fields,
+    expecting = "an object whose shape is disk, sphere, cylinder, pipe or capsule, with its sizes"
+)]
 enum Said {
     /// Faces +Y.
     Disk {

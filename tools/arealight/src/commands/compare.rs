@@ -38,7 +38,7 @@ pub struct Arguments {
     #[arg(long, default_value_t = 0.25, requires = "output")]
     scale: f64,
     /// Exposure of what a screen shows, in stops
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "EV", default_value_t = 0.0)]
     exposure: f32,
     /// Exit with 1 where the error is larger than this: the root of the mean squared difference over the mean
     #[arg(long, value_parser = super::eval::tolerance)]

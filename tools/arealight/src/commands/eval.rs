@@ -45,7 +45,7 @@ pub struct Arguments {
     against: Option<PathBuf>,
     /// The largest relative error of an answered case, max |answer - truth| / max truth over its channels:
     /// where one is larger, or none is answered, the worst case is named and the exit code is 1.
-    #[arg(long, value_name = "T", requires = "against", value_parser = tolerance, allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", requires = "against", value_parser = tolerance)]
     tolerance: Option<f64>,
     #[command(flatten)]
     device: gpu::DeviceArgument,

@@ -51,7 +51,7 @@ pub struct Arguments {
     reference: Option<u32>,
     /// Exposure of a .png in stops: radiance is multiplied by 2^EV; or auto: nine tenths of what is lit,
     /// lamps apart, have a luminance of at most 0.7
-    #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true)]
+    #[arg(long, value_name = "EV", default_value = "0")]
     exposure: Exposure,
     /// Samples a pixel along each axis, against jagged edges; from 2 to 5, bright edges have 6 lines of sight
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
@@ -71,7 +71,7 @@ pub struct Arguments {
     /// Shadows: off; or by N rays a sample, from 1 to 4, as they are (rays:N) or filtered over the penumbra
     /// (filtered:N). With --reference they are exact, or off [default: filtered, by four rays a pixel or one
     /// a sample; off with --tiles]
-    #[arg(long, value_name = "LEVEL", conflicts_with = "tiles")]
+    #[arg(long, value_name = "LEVEL")]
     shadows: Option<Shadows>,
     /// Go on with shadow rays where they are noisy, until the noise of each part of the picture, in levels of
     /// 255 as the screen shows the means of 4 x 4 pixels, is below LEVELS; at most 64 rounds [default: one]
@@ -97,10 +97,10 @@ pub struct Arguments {
 struct FogArguments {
     /// Fog in the place of the scene's: extinction per unit of length, 0 for none. Its froxels are 8 pixels
     /// wide and high, fewer in pictures less than 768 wide, in 64 slices
-    #[arg(long, value_name = "DENSITY", value_parser = parse_density, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DENSITY", value_parser = parse_density)]
     fog: Option<f32>,
     /// Of fog, the mean cosine of the angle by which it turns light: above 0 forwards
-    #[arg(long, value_name = "G", default_value_t = 0.0, requires = "fog", allow_negative_numbers = true,
+    #[arg(long, value_name = "G", default_value_t = 0.0, requires = "fog",
         value_parser = parse_anisotropy)]
     anisotropy: f32,
     /// Of fog, what it scatters of what it takes away
@@ -165,6 +165,9 @@ impl Arguments {
     }
 
     fn shadow_level(&self) -> Shadows {
+        if self.tiles.is_some() {
+            return Shadows::Off;
+        }
         self.shadows.unwrap_or_else(|| Shadows::for_samples(self.supersample * self.supersample))
     }
 
@@ -259,6 +262,11 @@ impl SurfaceChoice {
 pub(super) const TEXTURE_SIZE: u32 = 1024;
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    if arguments.tiles.is_some() && arguments.shadows.is_some_and(|level| level != Shadows::Off) {
+        let message = "is shaded without shadows: take --shadows off, or leave one of them out".into();
+        return Err(Failure::Argument { argument: "--tiles", message });
+    }
+
     // Read the scene
     let mut phases = Phases::default();
     let path = arguments.scene_name();

@@ -29,7 +29,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", help_heading = "Scene")]
     camera: Option<String>,
     /// Exposure to begin with, in stops
-    #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true)]
+    #[arg(long, value_name = "EV", default_value = "0")]
     exposure: Exposure,
     /// Samples a pixel that each frame adds to the truth, where it is shown
     #[arg(long, value_name = "N", default_value_t = 2,

@@ -75,8 +75,11 @@ fn events() -> Result<EventLoop<()>, Failure> {
 }
 
 fn no_window(why: &dyn Display) -> Failure {
-    let message = format!("no window can be opened ({why}); --record and --script need none");
-    Failure::Argument { argument: "view", message }
+    // winit's text begins with the place in its source
+    let why = why.to_string();
+    let why =
+        why.rsplit_once(".rs:").and_then(|(_, rest)| rest.split_once(": ")).map_or(&*why, |(_, why)| why);
+    Failure::Device(format!("no window can be opened ({why}); view --record needs none"))
 }
 
 /// A pixel's step of a touchpad, in steps of a wheel.

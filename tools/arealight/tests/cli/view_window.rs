@@ -83,5 +83,5 @@ fn without_a_display_it_says_what_needs_none() {
     let mut command =
         under_validation(program, folder.path(), "error,warn", "SYNCHRONIZATION_VALIDATION", "validate_sync");
     let output = command.arg("view").stderr(Stdio::piped()).output().unwrap();
-    refused(&output, 2, &["no window can be opened", "--record"]);
+    refused(&output, 4, &["no window can be opened", "--record"]);
 }

@@ -100,19 +100,11 @@ pub static FAMILIES: &[Family] = &[
     Family::new("concave", "stars, L, U and combs that cross the horizon several times", horizon::concave),
     Family::new("many-vertices", "64 vertices, round or jagged, crossing the horizon or not", horizon::many),
     Family::new("edge-on", "seen along its plane, 1e-9 to 1e-3 off it", contact::edge_on),
-    Family::new(
-        "in-plane-outside",
-        "the point lies in its plane, outside of the outline",
-        contact::plane_outside,
-    ),
-    Family::new(
-        "in-plane-inside",
-        "the point lies in its plane, inside of the outline",
-        contact::plane_inside,
-    ),
+    Family::new("in-plane-outside", "the point in its plane, outside of the outline", contact::plane_outside),
+    Family::new("in-plane-inside", "the point in its plane, inside of the outline", contact::plane_inside),
     Family::new(
         "in-plane-concave",
-        "the point lies in its plane, in a bay of the outline",
+        "the point in its plane, in a bay of the outline",
         contact::plane_concave,
     ),
     Family::new("contact-interior", "1e-6 to 1e-3 before or behind its inside", contact::interior),

@@ -55,7 +55,7 @@ impl LadderArguments {
         if self.seed != 1 {
             let _ = write!(command, " --seed {}", self.seed);
         }
-        command + " --html report.html"
+        command + self.html.as_ref().map_or("", |_| " --html report.html")
     }
 }
 
