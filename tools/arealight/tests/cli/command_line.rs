@@ -38,6 +38,7 @@ fn wrong_arguments_are_exit_code_2() {
         (&["render", &room, "--reference", "0"], &["--reference"]),
         (&["render", &room, "--surfaces", "shiny"], &["--surfaces", "'shiny' is no effect", "two_sided"]),
         (&["render", &screen, "--surfaces", "tube"], &["--surfaces", "tube depends on the lights"]),
+        (&["render", &room, "--tiles", "--shadows", "rays:1"], &["--tiles", "without shadows"]),
         (&["effects"], &["SCENE"]),
         (&["render", &room, "--camera", "nobody"], &["--camera", "nobody"]),
         (&["paint"], &["paint"]),
@@ -336,7 +337,7 @@ fn shadows_go_on_until_their_noise_is_low() {
         rendered(name, &[&one[..], &["--seed", "1"]].concat());
     }
     assert!(pixels("a.png") == pixels("b.png") && pixels("a.png") != pixels("once.png"));
-    refuse(folder.path(), &["render", "--shadow-noise", "0"], 2, &["--shadow-noise", "above 0"]);
+    refuse(folder.path(), &["render", "--shadow-noise", "-1"], 2, &["--shadow-noise", "above 0"]);
 }
 
 #[test]
