@@ -459,16 +459,41 @@ typedef struct ArealightTable {
     uint32_t reserved;
 } ArealightTable;
 
+// Options of a medium's pass. All zero: at the middle of each froxel, without shadow rays.
+typedef struct ArealightMediumOptions {
+    // 1: each sample has a ray over each light; 2: one ray alone, over a light that is drawn by how much of
+    // it is scattered there. 0: none.
+    uint32_t shadow_rays;
+    // At how many points of a froxel light is scattered, each with rays of its own. 0 is 1.
+    uint32_t samples;
+    // 1: scattering and extinction are read from ArealightMediumResources.medium. Else 0.
+    uint32_t by_image;
+    // 1: a froxel's distance is drawn within it, by ArealightMediumFrame.seed. Else 0.
+    uint32_t jitter;
+    // 1: froxels that surfaces hide from every pixel are filled, too. 0: they hold nothing, and positions
+    // are of the picture's size.
+    uint32_t fill_hidden;
+    // `medium_scatter.comp` of the host's, as ArealightShadowOptions.module.
+    struct ArealightModule module;
+} ArealightMediumOptions;
+
 // What arealight_area_lights_create makes. All zero is both lobes at the exact level, two frames in flight.
 typedef struct ArealightAreaLightsInfo {
     // How surfaces are stored and shaded; `descriptors` and `module` are 0.
     struct ArealightPassOptions options;
     // As of arealight_create.
     const struct ArealightTable *table;
+    // A medium before the picture, which arealight_area_lights_set_medium says more of before the first
+    // frame; its `by_image` and `module` are 0. Null is none.
+    const struct ArealightMediumOptions *medium;
     // How many frames may be recorded that are not done yet, at most 8. 0 is 2.
     uint32_t frames_in_flight;
     // With shadow rays, one of AREALIGHT_SHADOW_FILTER_*.
     uint32_t shadow_filter;
+    // With shadow rays, one of AREALIGHT_SHADOW_HISTORY_*.
+    uint32_t shadow_history;
+    // 0
+    uint32_t reserved;
 } ArealightAreaLightsInfo;
 
 // A light of constant radiance, or a textured one, in world positions. Which fields are read depends on its
@@ -669,6 +694,33 @@ typedef struct ArealightResources {
     struct ArealightBuffer light_counts;
 } ArealightResources;
 
+// A frame of a medium's pass.
+typedef struct ArealightMediumFrame {
+    // That of the shade pass, of a perspective camera, with `position_from_clip`; its size, camera, matrix
+    // and lights count.
+    const struct ArealightFrame *frame;
+    // VkDescriptorSet for set 1 of a module of the host's. Else 0.
+    uint64_t host_set;
+    // Across, down and away from the camera, each from 1 to 65535: such as 160 x 90 x 64.
+    uint32_t froxels[3];
+    // What is scattered per unit of length, a channel: extinction times albedo. From 0.
+    float scattering[3];
+    // What is scattered or absorbed per unit of length. From 0.
+    float extinction;
+    // The mean cosine of the angle by which light is turned, in (-1, 1).
+    float anisotropy;
+    // Slices are even up to about this distance, then each is longer by a factor. Above 0.
+    float nearest;
+    // Where the last slice ends. Above `nearest`.
+    float farthest;
+    // Of random numbers: one more in each frame.
+    uint32_t seed;
+    // Lights are left out of froxels that together add no more than this to a pixel's radiance, in the sum
+    // of the channels, for each unit of albedo. 0: only lights that nothing comes of. Frames of fewer than
+    // 32 lights leave none out.
+    float cull_radiance;
+} ArealightMediumFrame;
+
 // What memory an image of the library's needs.
 typedef struct ArealightMemory {
     // VkMemoryRequirements of the image.
@@ -728,24 +780,6 @@ typedef struct ArealightReach {
     double high[3];
 } ArealightReach;
 
-// Options of a medium's pass. All zero: at the middle of each froxel, without shadow rays.
-typedef struct ArealightMediumOptions {
-    // 1: each sample has a ray over each light; 2: one ray alone, over a light that is drawn by how much of
-    // it is scattered there. 0: none.
-    uint32_t shadow_rays;
-    // At how many points of a froxel light is scattered, each with rays of its own. 0 is 1.
-    uint32_t samples;
-    // 1: scattering and extinction are read from ArealightMediumResources.medium. Else 0.
-    uint32_t by_image;
-    // 1: a froxel's distance is drawn within it, by ArealightMediumFrame.seed. Else 0.
-    uint32_t jitter;
-    // 1: froxels that surfaces hide from every pixel are filled, too. 0: they hold nothing, and positions
-    // are of the picture's size.
-    uint32_t fill_hidden;
-    // `medium_scatter.comp` of the host's, as ArealightShadowOptions.module.
-    struct ArealightModule module;
-} ArealightMediumOptions;
-
 // The resources of a descriptor set.
 typedef struct ArealightSetLayout {
     // VkDescriptorSetLayout, the library's own.
@@ -777,33 +811,6 @@ typedef struct ArealightMediumResources {
     // ArealightBlockerArrays.triangles; without triangles, any buffer. 0 with a module of the host's.
     struct ArealightBuffer blocker_triangles;
 } ArealightMediumResources;
-
-// A frame of a medium's pass.
-typedef struct ArealightMediumFrame {
-    // That of the shade pass, of a perspective camera, with `position_from_clip`; its size, camera, matrix
-    // and lights count.
-    const struct ArealightFrame *frame;
-    // VkDescriptorSet for set 1 of a module of the host's. Else 0.
-    uint64_t host_set;
-    // Across, down and away from the camera, each from 1 to 65535: such as 160 x 90 x 64.
-    uint32_t froxels[3];
-    // What is scattered per unit of length, a channel: extinction times albedo. From 0.
-    float scattering[3];
-    // What is scattered or absorbed per unit of length. From 0.
-    float extinction;
-    // The mean cosine of the angle by which light is turned, in (-1, 1).
-    float anisotropy;
-    // Slices are even up to about this distance, then each is longer by a factor. Above 0.
-    float nearest;
-    // Where the last slice ends. Above `nearest`.
-    float farthest;
-    // Of random numbers: one more in each frame.
-    uint32_t seed;
-    // Lights are left out of froxels that together add no more than this to a pixel's radiance, in the sum
-    // of the channels, for each unit of albedo. 0: only lights that nothing comes of. Frames of fewer than
-    // 32 lights leave none out.
-    float cull_radiance;
-} ArealightMediumFrame;
 
 // The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own, to frames
 // before on the same queue, too.
@@ -989,6 +996,19 @@ enum ArealightResult arealight_area_lights_shade(struct ArealightAreaLights *are
 enum ArealightResult arealight_area_lights_set_blockers(struct ArealightAreaLights *area_lights,
                                                         const struct ArealightBlockers *blockers,
                                                         const double *origin);
+
+// Begins the history of shadows anew with the next frame, as after a cut.
+//
+// The host sees to it:
+// The pointer is null or valid.
+enum ArealightResult arealight_area_lights_forget_shadows(struct ArealightAreaLights *area_lights);
+
+// Says what the medium is from the next frame on. Of `medium`, `frame`, `host_set` and `seed` are not read.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_area_lights_set_medium(struct ArealightAreaLights *area_lights,
+                                                      const struct ArealightMediumFrame *medium);
 
 // Destroys it with all that it owns. Null is nothing.
 //
@@ -1390,11 +1410,14 @@ enum ArealightResult arealight_textures_destroy(struct ArealightTextures *textur
 #else
 #define AREALIGHT_ASSERT(condition) _Static_assert(condition, #condition)
 #endif
-AREALIGHT_ASSERT(sizeof(ArealightAreaLightsInfo) == 128);
+AREALIGHT_ASSERT(sizeof(ArealightAreaLightsInfo) == 144);
 AREALIGHT_ASSERT(offsetof(ArealightAreaLightsInfo, options) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightAreaLightsInfo, table) == 112);
-AREALIGHT_ASSERT(offsetof(ArealightAreaLightsInfo, frames_in_flight) == 120);
-AREALIGHT_ASSERT(offsetof(ArealightAreaLightsInfo, shadow_filter) == 124);
+AREALIGHT_ASSERT(offsetof(ArealightAreaLightsInfo, medium) == 120);
+AREALIGHT_ASSERT(offsetof(ArealightAreaLightsInfo, frames_in_flight) == 128);
+AREALIGHT_ASSERT(offsetof(ArealightAreaLightsInfo, shadow_filter) == 132);
+AREALIGHT_ASSERT(offsetof(ArealightAreaLightsInfo, shadow_history) == 136);
+AREALIGHT_ASSERT(offsetof(ArealightAreaLightsInfo, reserved) == 140);
 AREALIGHT_ASSERT(sizeof(ArealightMediumOptions) == 48);
 AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, shadow_rays) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightMediumOptions, samples) == 4);

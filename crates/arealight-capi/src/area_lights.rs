@@ -4,9 +4,10 @@ use crate::constants::AREALIGHT_DESCRIPTORS_SETS;
 use crate::device::{open, read_host, read_table};
 use crate::failure::{ArealightResult, Failure, call};
 use crate::lights::{read_lights, read_origin};
+use crate::medium::{ArealightMediumFrame, ArealightMediumOptions, medium_frame, medium_options};
 use crate::options::{level, shade_options, tile_options};
 use crate::pass::{read_frame_of, read_resources};
-use crate::shadows::{ArealightBlockers, FILTERS};
+use crate::shadows::{ArealightBlockers, FILTERS, HISTORIES};
 use crate::types::{
     ArealightBuffer, ArealightFrame, ArealightHost, ArealightLight, ArealightLightSummary,
     ArealightPassOptions, ArealightResources, ArealightTable,
@@ -15,7 +16,7 @@ use crate::{arguments, handles};
 use arealight_vk::ash::vk::{self, Handle as _};
 use arealight_vk::gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use arealight_vk::gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
-use arealight_vk::{AreaLights, AreaLightsInfo, Resource};
+use arealight_vk::{AreaLights, AreaLightsInfo, Resource, ShadeFrame};
 use std::ffi::c_void;
 use std::ptr::null_mut;
 use std::sync::{Arc, Mutex};
@@ -28,10 +29,17 @@ pub struct ArealightAreaLightsInfo {
     pub options: ArealightPassOptions,
     /// As of arealight_create.
     pub table: *const ArealightTable,
+    /// A medium before the picture, which arealight_area_lights_set_medium says more of before the first
+    /// frame; its `by_image` and `module` are 0. Null is none.
+    pub medium: *const ArealightMediumOptions,
     /// How many frames may be recorded that are not done yet, at most 8. 0 is 2.
     pub frames_in_flight: u32,
     /// With shadow rays, one of AREALIGHT_SHADOW_FILTER_*.
     pub shadow_filter: u32,
+    /// With shadow rays, one of AREALIGHT_SHADOW_HISTORY_*.
+    pub shadow_history: u32,
+    /// 0
+    pub reserved: u32,
 }
 
 /// The passes of one view with all that they need: table, buffers of lights, descriptor sets, lists of tiles,
@@ -87,12 +95,26 @@ unsafe fn read_info(info: *const ArealightAreaLightsInfo) -> Result<AreaLightsIn
         let why = "must be 0, since the library has sets and modules of its own";
         return Err(Failure::argument(format!("options.descriptors and options.module: {why}")));
     }
+    arguments::refuse_reserved(info.reserved, "info.reserved")?;
+    let options = shade_options(&info.options)?;
     // SAFETY: as above.
     let (table, table_format) = unsafe { read_table(info.table) }?;
+    // SAFETY: as above.
+    let medium = (!info.medium.is_null()).then(|| unsafe { arguments::read(info.medium, "info.medium") });
+    let medium = medium.transpose()?.map(|medium| {
+        if medium.by_image != 0 || !medium.module.words.is_null() {
+            let why = "must be 0, since the medium is even and has a module of its own";
+            return Err(Failure::argument(format!("medium.by_image and medium.module: {why}")));
+        }
+        let nothing = medium_frame(&ShadeFrame::default(), &ArealightMediumFrame::default());
+        Ok((medium_options(options, medium)?, nothing))
+    });
     Ok(AreaLightsInfo {
-        options: shade_options(&info.options)?,
+        options,
         tiles: tile_options(&info.options),
         shadow_filter: level(info.shadow_filter, &FILTERS, "info.shadow_filter")?,
+        shadow_history: level(info.shadow_history, &HISTORIES, "info.shadow_history")?,
+        medium: medium.transpose()?,
         frames_in_flight: level(info.frames_in_flight, &FRAMES, "info.frames_in_flight")?,
         table,
         table_format,
@@ -159,6 +181,40 @@ pub unsafe extern "C" fn arealight_area_lights_set_blockers(
         let mut area_lights = handles::lock(&handles::borrow(area_lights, "area_lights")?.inner);
         let blockers = &handles::borrow(blockers, "blockers")?.blockers;
         Ok(area_lights.set_blockers(blockers, read_origin(origin)?)?)
+    })
+}
+
+/// Begins the history of shadows anew with the next frame, as after a cut.
+///
+/// # Safety
+/// The pointer is null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_area_lights_forget_shadows(
+    area_lights: *mut ArealightAreaLights,
+) -> ArealightResult {
+    // SAFETY: the caller vouches for the pointer.
+    call(|| unsafe {
+        handles::lock(&handles::borrow(area_lights, "area_lights")?.inner).forget_shadows();
+        Ok(())
+    })
+}
+
+/// Says what the medium is from the next frame on. Of `medium`, `frame`, `host_set` and `seed` are not read.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_area_lights_set_medium(
+    area_lights: *mut ArealightAreaLights,
+    medium: *const ArealightMediumFrame,
+) -> ArealightResult {
+    // SAFETY: the caller vouches for the pointers.
+    call(|| unsafe {
+        let mut area_lights = handles::lock(&handles::borrow(area_lights, "area_lights")?.inner);
+        let medium = medium_frame(&ShadeFrame::default(), arguments::read(medium, "medium")?);
+        let none = || Failure::argument("medium: is given, but ArealightAreaLightsInfo.medium was null");
+        *area_lights.medium_mut().ok_or_else(none)? = medium;
+        Ok(())
     })
 }
 

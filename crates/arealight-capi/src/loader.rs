@@ -12,8 +12,8 @@ const INSTANCE: &str = "vkGetPhysicalDeviceProperties vkGetPhysicalDeviceFormatP
     vkGetPhysicalDeviceImageFormatProperties vkGetPhysicalDeviceMemoryProperties";
 const DEVICE: &str = "vkAllocateDescriptorSets vkAllocateMemory vkBindBufferMemory vkBindImageMemory
     vkCmdBindDescriptorSets vkCmdBindPipeline vkCmdClearColorImage vkCmdCopyBuffer vkCmdCopyBufferToImage
-    vkCmdDispatch vkCmdDispatchBase vkCmdDispatchIndirect vkCmdPipelineBarrier vkCmdPushConstants
-    vkCmdUpdateBuffer vkCreateBuffer vkCreateComputePipelines vkCreateDescriptorPool
+    vkCmdDispatch vkCmdDispatchBase vkCmdDispatchIndirect vkCmdFillBuffer vkCmdPipelineBarrier
+    vkCmdPushConstants vkCmdUpdateBuffer vkCreateBuffer vkCreateComputePipelines vkCreateDescriptorPool
     vkCreateDescriptorSetLayout vkCreateImage vkCreateImageView vkCreatePipelineLayout vkCreateSampler
     vkCreateShaderModule vkDestroyBuffer vkDestroyDescriptorPool vkDestroyDescriptorSetLayout
     vkDestroyImage vkDestroyImageView vkDestroyPipeline vkDestroyPipelineLayout vkDestroySampler

@@ -110,7 +110,10 @@ pub unsafe extern "C" fn arealight_medium_pass_create(
     })
 }
 
-fn medium_options(shade: ShadeOptions, medium: &ArealightMediumOptions) -> Result<MediumOptions, Failure> {
+pub(crate) fn medium_options(
+    shade: ShadeOptions,
+    medium: &ArealightMediumOptions,
+) -> Result<MediumOptions, Failure> {
     let rays = [(false, false), (true, false), (true, true)];
     let (shadow_rays, one_light) = level(medium.shadow_rays, &rays, "medium.shadow_rays")?;
     Ok(MediumOptions {
@@ -210,7 +213,7 @@ pub unsafe extern "C" fn arealight_medium_pass_record(
     })
 }
 
-fn medium_frame(shade: &ShadeFrame, medium: &ArealightMediumFrame) -> MediumFrame {
+pub(crate) fn medium_frame(shade: &ShadeFrame, medium: &ArealightMediumFrame) -> MediumFrame {
     MediumFrame {
         froxels: medium.froxels,
         size: shade.size,

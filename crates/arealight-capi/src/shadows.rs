@@ -123,14 +123,14 @@ pub unsafe extern "C" fn arealight_shadow_pass_create(
 /// By AREALIGHT_SHADOW_FILTER_*.
 pub(crate) const FILTERS: [ShadowFilter; 2] = [ShadowFilter::Off, ShadowFilter::Gather];
 
+/// By AREALIGHT_SHADOW_HISTORY_*.
+pub(crate) const HISTORIES: [ShadowHistory; 3] =
+    [ShadowHistory::Off, ShadowHistory::Camera, ShadowHistory::MotionVectors];
+
 fn shadow_options(options: &ArealightShadowOptions) -> Result<ShadowOptions, Failure> {
     Ok(ShadowOptions {
         filter: level(options.filter, &FILTERS, "options.filter")?,
-        history: level(
-            options.history,
-            &[ShadowHistory::Off, ShadowHistory::Camera, ShadowHistory::MotionVectors],
-            "options.history",
-        )?,
+        history: level(options.history, &HISTORIES, "options.history")?,
         output: level(options.output, &[Output::Overwrite, Output::Add], "options.output")?,
     })
 }

@@ -1,10 +1,11 @@
 //! All that shading by area lights needs, in one object that owns it.
 
+mod history;
 mod place;
 mod textures;
 
 use crate::context::{COPIED, Context, USED, WRITTEN};
-use crate::error::{Error, VulkanCall};
+use crate::error::Error;
 use crate::frame::ShadeFrame;
 use crate::light_textures::TextureUpdate;
 use crate::medium::{MediumFrame, MediumPass, MediumPassInfo};
@@ -20,7 +21,8 @@ use bytemuck::cast_slice;
 use glam::{DVec3, Mat4, Vec3};
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocator;
-use place::Place;
+use history::History;
+use place::{Place, descriptor_sets, place_of};
 use std::sync::{Arc, Mutex};
 use textures::Textures;
 
@@ -34,6 +36,9 @@ pub struct AreaLightsInfo {
     pub tiles: Option<TileOptions>,
     /// How shadow rays are filtered.
     pub shadow_filter: ShadowFilter,
+    /// Of how many frames' rays a mean is made before, until [`AreaLights::forget_shadows`]; each frame has
+    /// its [`ShadeFrame::position_from_clip`].
+    pub shadow_history: ShadowHistory,
     /// A medium before the picture, of perspective cameras. Rays need [`ShadeOptions::shadow_rays`]. Depth,
     /// format and quality are taken from [`AreaLightsInfo::options`], and size, camera, matrix, lights and
     /// seed from each frame.
@@ -55,6 +60,7 @@ impl Default for AreaLightsInfo {
             options: ShadeOptions::default(),
             tiles: None,
             shadow_filter: ShadowFilter::default(),
+            shadow_history: ShadowHistory::Off,
             medium: None,
             frames_in_flight: 2,
             table: LightTable::ggx(),
@@ -87,6 +93,7 @@ pub struct AreaLights {
     blockers: Option<Arc<[Buffer; 2]>>,
     /// What blockers are relative to, where there are any.
     blockers_origin: Option<DVec3>,
+    history: Option<History>,
     /// What the table and blockers are copied from by the next frame, until it was recorded.
     new_table: Option<Arc<Buffer>>,
     new_blockers: Option<Arc<[Buffer; 2]>>,
@@ -113,7 +120,7 @@ impl AreaLights {
     /// # Errors
     /// As [`Context::new`], [`ShadePass::new`], [`ShadowPass::new`], [`MediumPass::new`] and
     /// [`LightTextures::new`](crate::LightTextures::new); [`Error::InvalidArgument`] where there is no frame
-    /// in flight, or rays of a medium alone; [`Error::Vulkan`] where memory is out.
+    /// in flight, or no shadow rays but a medium's or a history; [`Error::Vulkan`] where memory is out.
     pub unsafe fn new(
         instance: &ash::Instance,
         physical_device: vk::PhysicalDevice,
@@ -143,8 +150,8 @@ impl AreaLights {
             return Err(Error::InvalidArgument { field: "frames_in_flight", message });
         }
         let has_rays = info.medium.is_some_and(|(medium, _)| medium.shadow_rays);
-        if has_rays && info.options.shadow_rays == 0 {
-            let message = "is 0, but the medium has rays, which take blockers: 1 will do".into();
+        if (has_rays || info.shadow_history != ShadowHistory::Off) && info.options.shadow_rays == 0 {
+            let message = "is 0, but the medium has rays, or shadows a history: 1 will do".into();
             return Err(Error::InvalidArgument { field: "shadow_rays", message });
         }
         let allocator = SharedAllocator(allocator);
@@ -174,6 +181,7 @@ impl AreaLights {
                 lobe_horizons,
                 blockers: None,
                 blockers_origin: None,
+                history: None,
                 new_table: Some(Arc::new(texels)),
                 new_blockers: None,
                 pool: vk::DescriptorPool::null(),
@@ -254,6 +262,14 @@ impl AreaLights {
         Ok(())
     }
 
+    /// Begins [`AreaLightsInfo::shadow_history`] anew with the next frame, as after a cut. Another size of
+    /// picture does, too.
+    pub fn forget_shadows(&mut self) {
+        if let Some(history) = &mut self.history {
+            history.before = None;
+        }
+    }
+
     /// Records that images are loaded into layers of the light textures, for the frame at `place`, before
     /// [`AreaLights::shade`] and once at most. Each update comes with its image, a
     /// [`Resource::SampledImage`]; [`TextureUpdate::source_set`] does not count.
@@ -312,6 +328,9 @@ impl AreaLights {
         }
         recorded?;
         (self.new_table, self.new_blockers) = (None, None);
+        if let Some(history) = &mut self.history {
+            history.before = Some(origin);
+        }
         self.seed = self.seed.wrapping_add(1);
         Ok(())
     }
@@ -345,6 +364,11 @@ impl AreaLights {
             let froxels = self.medium.as_ref().map(|(_, medium)| medium.froxels);
             place.fit(context, allocator, (&self.shade, self.options), (view.size, froxels))?;
         }
+        let has_history = self.shadow.as_ref().is_some_and(ShadowPass::has_history);
+        if has_history && self.history.as_ref().is_none_or(|history| history.size != view.size) {
+            // SAFETY: places whose frames use the one before keep it.
+            self.history = Some(unsafe { History::new(context, allocator, view.size) }?);
+        }
         let resources = ShadeResources {
             table: self.table.0.resource(),
             light_textures: self.textures.as_ref().map(Textures::resource).or(g_buffer.light_textures),
@@ -362,7 +386,7 @@ impl AreaLights {
         self.shade.prepare(&frame)?;
         let shadows = match (&self.shadow, &self.blockers) {
             (Some(shadow), Some(blockers)) => {
-                let of_shadows = place.shadow_resources(g_buffer, blockers);
+                let of_shadows = place.shadow_resources(g_buffer, blockers, self.history.as_ref());
                 // SAFETY: as above.
                 unsafe { shadow.write_set(place.sets[1], &resources, &of_shadows) }?;
                 shadow.prepare(frame.lights)?;
@@ -404,7 +428,11 @@ impl AreaLights {
             self.shade.record(command_buffer, place.sets[0], &frame)?;
             if let Some((shadow, of_shadows)) = shadows {
                 context.record_barrier(command_buffer, WRITTEN, USED);
-                let frame = ShadowFrame { shade: &frame, origin_shift: Vec3::ZERO };
+                let mut frame = ShadowFrame { shade: &frame, origin_shift: Vec3::ZERO };
+                if let Some(history) = &self.history {
+                    history.record_beginning(context, command_buffer);
+                    frame.origin_shift = history.origin_shift(origin);
+                }
                 shadow.record(command_buffer, Bound::Set(place.sets[1]), &of_shadows, &frame)?;
             }
             if let Some((medium, set, frame)) = medium {
@@ -439,38 +467,10 @@ unsafe fn passes(context: &Context, info: &AreaLightsInfo) -> Result<(ShadePass,
         if !with_shadows {
             return Ok((shade, None));
         }
-        let shadows =
-            ShadowOptions { filter: info.shadow_filter, history: ShadowHistory::Off, output: host.output };
+        let (filter, history) = (info.shadow_filter, info.shadow_history);
+        let shadows = ShadowOptions { filter, history, output: host.output };
         let shadow =
             ShadowPass::new(context, ShadowPassInfo { options, shadows, ..ShadowPassInfo::default() })?;
         Ok((shade, Some(shadow)))
-    }
-}
-
-/// A place, if it is there.
-fn place_of<T>(places: &mut [T], place: usize) -> Result<&mut T, Error> {
-    let count = places.len();
-    let message = format!("{place} is not there: frames_in_flight is {count}");
-    places.get_mut(place).ok_or(Error::InvalidArgument { field: "place", message })
-}
-
-/// A pool, and all its sets.
-fn descriptor_sets(
-    Context { device, .. }: &Context,
-    sizes: &[vk::DescriptorPoolSize],
-    layouts: &[vk::DescriptorSetLayout],
-) -> Result<(vk::DescriptorPool, Vec<vk::DescriptorSet>), Error> {
-    let info = vk::DescriptorPoolCreateInfo::default().max_sets(layouts.len() as u32).pool_sizes(sizes);
-    // SAFETY: the device is valid by the contract of Context::new; the layouts are the passes'.
-    unsafe {
-        let pool = device.create_descriptor_pool(&info, None).call("vkCreateDescriptorPool")?;
-        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(layouts);
-        match device.allocate_descriptor_sets(&info).call("vkAllocateDescriptorSets") {
-            Ok(sets) => Ok((pool, sets)),
-            Err(error) => {
-                device.destroy_descriptor_pool(pool, None);
-                Err(error)
-            }
-        }
     }
 }

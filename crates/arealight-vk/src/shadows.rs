@@ -241,7 +241,7 @@ impl ShadowPass {
         plan::shadow_history_specialization(self.options, self.shadows.history)
     }
 
-    fn has_history(&self) -> bool {
+    pub(crate) fn has_history(&self) -> bool {
         self.shadows.history != ShadowHistory::Off
     }
 

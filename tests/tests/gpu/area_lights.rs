@@ -1,11 +1,12 @@
 //! The object that owns all that shading needs: it draws what the recorder does.
 
-use arealight::plan::{MediumOptions, ShadowFilter};
+use arealight::plan::{MediumOptions, ShadowFilter, ShadowHistory};
 use arealight::{Blockers, TexturePart};
 use arealight_tests::floor::{SIZE, position};
 use arealight_tests::prelude::*;
 use arealight_vk::gpu_allocator::{AllocationSizes, AllocatorDebugSettings, vulkan};
 use arealight_vk::{AreaLights, AreaLightsInfo, MediumFrame, TextureUpdate};
+use glam::{DAffine3, Mat4};
 use std::sync::Mutex;
 
 /// Does something with area lights on the engine's device, and sees that all memory was given back.
@@ -37,6 +38,19 @@ fn picture(
     (floor, lights): (&Floor<'_>, &[Light]),
     view: &ShadeFrame,
 ) -> Vec<Vec4> {
+    picture_at(DVec3::ZERO, area_lights, place, (floor, lights), view)
+}
+
+/// The same where all of that is elsewhere.
+fn picture_at(
+    origin: DVec3,
+    area_lights: &mut AreaLights,
+    place: usize,
+    (floor, lights): (&Floor<'_>, &[Light]),
+    view: &ShadeFrame,
+) -> Vec<Vec4> {
+    let there: Vec<Light> =
+        lights.iter().map(|light| light.moved(&DAffine3::from_translation(origin))).collect();
     // The object has a table and buffers of its own
     let nothing = ShadeResources::default();
     let ShadeResources { table, lights: records, light_vertices, .. } = nothing;
@@ -44,7 +58,7 @@ fn picture(
         ShadeResources { table, lights: records, light_vertices, shapes: None, ..floor.resources() };
     floor.picture_after(|commands| {
         // SAFETY: The frame is waited for, and the images outlive it.
-        unsafe { area_lights.shade(commands, place, lights, DVec3::ZERO, view, &g_buffer) }.unwrap();
+        unsafe { area_lights.shade(commands, place, &there, origin, view, &g_buffer) }.unwrap();
     })
 }
 
@@ -135,15 +149,62 @@ fn what_blocks_darkens_and_what_does_not_changes_nothing() {
 }
 
 #[test]
+fn shadows_of_frames_before_take_noise_away_until_they_are_forgotten() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (floor, lights) = (Floor::new(&engine, &[lamp()]), [lamp()]);
+    // From clip space to the positions of the floor's pixels
+    let position_from_clip =
+        Mat4::from_cols(3.7 * Vec4::X, -2.1 * Vec4::Y, Vec4::Z, Vec4::new(-0.1, 0.5, 0.0, 1.0));
+    let view = ShadeFrame { position_from_clip: Some(position_from_clip), ..floor.frame() };
+    let [a, b, c] = [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].map(|[x, y]| Vec3::new(x, y, 1.0));
+    let blockers = Blockers::new(&[[a, b, c]]).unwrap();
+    // Pictures by one ray a pixel, of which the last is elsewhere, or of another size, than those before
+    let film = |shadow_history, count, forgets, (before, moved): ([u32; 2], f64)| {
+        let options = ShadeOptions { shadow_rays: 1, ..ShadeOptions::default() };
+        let shadow_filter = ShadowFilter::Off;
+        let info = AreaLightsInfo { options, shadow_filter, shadow_history, ..AreaLightsInfo::default() };
+        let mut pictures = vec![];
+        with_area_lights(&engine, &info, |area_lights| {
+            for number in 1..=count {
+                let (size, origin) = if number < count { (before, 0.0) } else { (SIZE, moved) };
+                if forgets && number == count {
+                    area_lights.forget_shadows();
+                }
+                let origin = DVec3::X * origin;
+                area_lights.set_blockers(&blockers, origin).unwrap();
+                let (view, floor) = (ShadeFrame { size, ..view }, (&floor, &lights[..]));
+                pictures.push(picture_at(origin, area_lights, number % 2, floor, &view));
+            }
+        });
+        pictures
+    };
+    let truth = film(ShadowHistory::Off, 128, false, (SIZE, 0.0));
+    let error = |picture: &[Vec4]| {
+        let mean = |index: usize| truth.iter().map(|one| one[index]).sum::<Vec4>() / truth.len() as f32;
+        picture.iter().enumerate().map(|(index, texel)| (*texel - mean(index)).length_squared()).sum::<f32>()
+    };
+    let frames = 9;
+    let kept = film(ShadowHistory::Camera, frames, false, (SIZE, 0.0));
+    let forgotten = film(ShadowHistory::Camera, frames, true, (SIZE, 0.0)).pop().unwrap();
+    // The variance of a mean of nine is a ninth; what is compared is a mean itself, and some of them shorter
+    assert!(error(&kept[8]) < 0.25 * error(&kept[0]), "{} {}", error(&kept[8]), error(&kept[0]));
+    assert!(error(&forgotten) > 0.7 * error(&kept[0]), "{} {}", error(&forgotten), error(&kept[0]));
+    // So is it where pictures were smaller, or of a place that is not in the picture
+    for other in [([8, 8], 0.0), (SIZE, 100.0)] {
+        assert!(film(ShadowHistory::Camera, frames, false, other).pop().unwrap() == forgotten);
+    }
+}
+
+#[test]
 fn media_dim_what_is_shaded_and_scatter_light_that_nothing_blocks() {
     let Some(engine) = TestEngine::new() else { return };
     let (floor, lights) = (Floor::new(&engine, &[lamp()]), [lamp()]);
-    let view = ShadeFrame { position_from_clip: Some(glam::Mat4::IDENTITY), ..floor.frame() };
+    let view = ShadeFrame { position_from_clip: Some(Mat4::IDENTITY), ..floor.frame() };
     let medium = MediumFrame {
         froxels: [4, 3, 64],
         size: [0; 2],
         camera: Vec3::ZERO,
-        position_from_clip: glam::Mat4::ZERO,
+        position_from_clip: Mat4::ZERO,
         lights: LightSummary::default(),
         scattering: Vec3::ZERO,
         extinction: 0.2,

@@ -63,10 +63,14 @@ fn area_lights_say_what_they_cannot_do() {
     let (host, mut made, words) = (no_host(), null_mut(), [0_u32; 4]);
     let zero = ArealightPassOptions::default();
     let module = ArealightModule { words: words.as_ptr(), size: 16, host_set_layout: 0 };
+    let by_image = ArealightMediumOptions { by_image: 1, ..Default::default() };
     let with = |options| ArealightAreaLightsInfo { options, ..NO_INFO };
     for (wrong, words) in [
         (ArealightAreaLightsInfo { frames_in_flight: 9, ..NO_INFO }, "frames_in_flight: 9 must be"),
         (ArealightAreaLightsInfo { shadow_filter: 2, ..NO_INFO }, "info.shadow_filter: 2 must be"),
+        (ArealightAreaLightsInfo { shadow_history: 3, ..NO_INFO }, "info.shadow_history: 3 must be"),
+        (ArealightAreaLightsInfo { reserved: 1, ..NO_INFO }, "info.reserved"),
+        (ArealightAreaLightsInfo { medium: &raw const by_image, ..NO_INFO }, "medium.by_image and medium."),
         (
             with(ArealightPassOptions { descriptors: 1, ..zero }),
             "options.descriptors and options.module: must be 0",
@@ -91,6 +95,7 @@ fn area_lights_say_what_they_cannot_do() {
     let uvs = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0];
     let textured = ArealightLight { textured: 1, texture_coordinates: uvs.as_ptr(), ..light };
     let flat = ArealightLight { vertex_count: 2, ..light };
+    let medium = ArealightMediumFrame::default();
     let masked = ArealightFrame { stencil_reference: 1, ..frame };
     library.with_area_lights(&NO_INFO, |owner| {
         let never = engine.host().try_submit(|commands| {
@@ -121,6 +126,9 @@ fn area_lights_say_what_they_cannot_do() {
                 let set = arealight_area_lights_set_blockers(owner, blockers, [0.0; 3].as_ptr());
                 refused(set, ErrorArgument, "ArealightPassOptions.shadow_rays is 0");
                 good(arealight_blockers_destroy(blockers));
+                good(arealight_area_lights_forget_shadows(owner));
+                let set = arealight_area_lights_set_medium(owner, &raw const medium);
+                refused(set, ErrorArgument, "ArealightAreaLightsInfo.medium was null");
             }
             Err(HostError::NoDevice { found: vec![] })
         });

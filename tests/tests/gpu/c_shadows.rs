@@ -169,30 +169,52 @@ impl<'a> CPasses<'a> {
             })
             .unwrap();
         }
-        // What owns all this draws the same; its random numbers begin at 0
-        if seed == 0 && medium.is_none() {
-            let options = ArealightPassOptions { shadow_rays: 2, ..ArealightPassOptions::default() };
-            let shadow_filter = AREALIGHT_SHADOW_FILTER_GATHER;
-            let info = ArealightAreaLightsInfo { options, shadow_filter, ..NO_INFO };
-            let images = ArealightResources { radiance: c_image(&owned, Usage::COMPUTE_WRITE), ..resources };
-            self.library.with_area_lights(&info, |owner| {
-                let set = |blockers: *mut _| {
-                    // SAFETY: the pointers are valid.
-                    good(unsafe { arealight_area_lights_set_blockers(owner, blockers, [0.0; 3].as_ptr()) });
-                };
-                blocker_arrays(&patch.blockers, None, set);
-                self.library.submit(null_mut(), &lights, &images, &frame);
-            });
-            assert_eq!(stored_in(&owned), stored_in(&shadowed));
-        }
         if let Some(medium) = medium {
             self.put_before(&resources, &of_shadows, &frame, medium);
         }
-        stored_in(if medium.is_some() { &unshadowed } else { &shadowed })
+        let drawn = stored_in(if medium.is_some() { &unshadowed } else { &shadowed });
+        // What owns all this draws the same; its random numbers begin at 0
+        if seed == 0 && medium.is_none_or(|(rays, _)| rays == 0) {
+            let images = ArealightResources { radiance: c_image(&owned, Usage::COMPUTE_WRITE), ..resources };
+            self.draw_by_owner(patch, medium.map(|(_, medium)| medium), &images, &frame);
+            assert_eq!(stored_in(&owned), drawn);
+        }
+        drawn
     }
 }
 
 impl CPasses<'_> {
+    /// Draws by what owns all: with shadows, or without, through a medium.
+    fn draw_by_owner(
+        &self,
+        patch: &ShadowPatch,
+        medium: Option<&ArealightMediumFrame>,
+        images: &ArealightResources,
+        frame: &ArealightFrame,
+    ) {
+        let lights: Vec<_> = patch.lights.iter().map(c_lamp).collect();
+        let shadow_rays = if medium.is_none() { 2 } else { 0 };
+        let options = ArealightPassOptions { shadow_rays, ..ArealightPassOptions::default() };
+        let of_medium = ArealightMediumOptions::default();
+        let info = ArealightAreaLightsInfo {
+            options,
+            shadow_filter: AREALIGHT_SHADOW_FILTER_GATHER,
+            medium: medium.map_or(null(), |_| &raw const of_medium),
+            ..NO_INFO
+        };
+        // SAFETY: the pointers are valid, here and below.
+        self.library.with_area_lights(&info, |owner| unsafe {
+            if let Some(medium) = medium {
+                good(arealight_area_lights_set_medium(owner, medium));
+            } else {
+                blocker_arrays(&patch.blockers, None, |blockers| {
+                    good(arealight_area_lights_set_blockers(owner, blockers, [0.0; 3].as_ptr()));
+                });
+            }
+            self.library.submit(null_mut(), &lights, images, frame);
+        });
+    }
+
     /// Puts a medium before what was shaded.
     fn put_before(
         &self,

@@ -62,7 +62,9 @@ fn assert_relations(engine: &TestEngine, path: Path, table: Option<&LightTable>,
 
 /// What every kind of lobe keeps; the levels that kept it.
 fn assert_all_relations(engine: &TestEngine, table: Option<&LightTable>, horizon: Horizon) -> Vec<Level> {
-    PATHS.into_iter().for_each(|path| assert_relations(engine, path, table, horizon));
+    for path in PATHS {
+        assert_relations(engine, path, table, horizon);
+    }
     let levels = Level::of(&PATHS, &[horizon]);
     boxes::a_box_of_lights_around_the_point_sums_to_one(engine, table, &levels);
     scaling_by_a_power_of_two_changes_no_bit(engine, table, &levels);

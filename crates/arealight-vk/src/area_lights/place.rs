@@ -1,7 +1,8 @@
 //! What each frame in flight has for itself.
 
+use super::history::History;
 use crate::context::Context;
-use crate::error::Error;
+use crate::error::{Error, VulkanCall};
 use crate::medium::{MediumPass, MediumResources};
 use crate::memory::{Buffer, LEAST, SharedAllocator, StoredImage, mapped};
 use crate::resource::Resource;
@@ -21,6 +22,7 @@ pub(super) struct Place {
     /// What the place's frame copies the table and blockers from.
     pub(super) staging: (Option<Arc<Buffer>>, Option<Arc<[Buffer; 2]>>),
     blockers: Option<Arc<[Buffer; 2]>>,
+    history: Option<Arc<Buffer>>,
     /// Lights, vertices and shapes.
     lights: [Buffer; 3],
     tile_lists: Option<Buffer>,
@@ -51,6 +53,7 @@ impl Place {
             sets,
             staging: (None, None),
             blockers: None,
+            history: None,
             lights,
             tile_lists: None,
             shadows: None,
@@ -150,20 +153,22 @@ impl Place {
         }
     }
 
-    /// Those of the shadow pass, which keeps the blockers.
+    /// Those of the shadow pass; the place keeps the blockers and the history.
     pub(super) fn shadow_resources(
         &mut self,
         g_buffer: &ShadeResources,
         blockers: &Arc<[Buffer; 2]>,
+        history: Option<&History>,
     ) -> ShadowResources {
         self.blockers = Some(Arc::clone(blockers));
+        self.history = history.map(|history| Arc::clone(&history.buffer));
         let shadows = self.shadows.as_ref();
         let own = shadows.and_then(|shadows| shadows.unshadowed.as_ref());
         ShadowResources {
             shadow: shadows
                 .map_or_else(Resource::default, |shadows| Resource::stored(shadows.shadow.image.view)),
             radiance: own.map(|_| g_buffer.radiance),
-            history: None,
+            history: self.history.as_ref().map(|buffer| Resource::buffer(buffer.raw)),
             blockers: self.blocker_resources(),
         }
     }
@@ -201,6 +206,34 @@ impl Place {
                 (vk::PipelineStageFlags::TOP_OF_PIPE, vk::PipelineStageFlags::COMPUTE_SHADER),
                 &images,
             );
+        }
+    }
+}
+
+/// A place, if it is there.
+pub(super) fn place_of<T>(places: &mut [T], place: usize) -> Result<&mut T, Error> {
+    let count = places.len();
+    let message = format!("{place} is not there: frames_in_flight is {count}");
+    places.get_mut(place).ok_or(Error::InvalidArgument { field: "place", message })
+}
+
+/// A pool, and all its sets.
+pub(super) fn descriptor_sets(
+    Context { device, .. }: &Context,
+    sizes: &[vk::DescriptorPoolSize],
+    layouts: &[vk::DescriptorSetLayout],
+) -> Result<(vk::DescriptorPool, Vec<vk::DescriptorSet>), Error> {
+    let info = vk::DescriptorPoolCreateInfo::default().max_sets(layouts.len() as u32).pool_sizes(sizes);
+    // SAFETY: the device is valid by the contract of Context::new; the layouts are the passes'.
+    unsafe {
+        let pool = device.create_descriptor_pool(&info, None).call("vkCreateDescriptorPool")?;
+        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(layouts);
+        match device.allocate_descriptor_sets(&info).call("vkAllocateDescriptorSets") {
+            Ok(sets) => Ok((pool, sets)),
+            Err(error) => {
+                device.destroy_descriptor_pool(pool, None);
+                Err(error)
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Light textures with their memory and descriptor sets.
 
-use super::{descriptor_sets, place_of};
+use super::place::{descriptor_sets, place_of};
 use crate::context::Context;
 use crate::error::Error;
 use crate::light_textures::{LightTextures, TextureUpdate};
