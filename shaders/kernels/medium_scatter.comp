@@ -70,11 +70,11 @@ float ray_arrives(uint pick, vec3 position, vec2 random) {
 
 // Adds what is scattered of the light of an index, of PICK_SHAPE or 0.
 //
-// On its way to the froxel it is dimmed as on that from its center, by a medium that is as here.
+// On its way to the froxel it is dimmed as on that from its center, less `depth`, by a medium that is as here.
 void add_scattered(inout Scattered scattered, ArealightMediumPoint medium, uint index, vec3 center,
-                   vec3 light) {
+                   float depth, vec3 light) {
     vec3 position = medium.point.position;
-    light *= exp(-scattered.extinction * distance(center, position));
+    light *= exp(-scattered.extinction * max(distance(center, position) - depth, 0.0));
     float weight = arealight_luminance(light);
     if (!(weight > 0.0)) {
         return;
@@ -101,21 +101,25 @@ vec3 all_scattered(Scattered scattered, ArealightMediumPoint medium, CellList li
             uint index = cell_light(list, place);
             ArealightGpuLight record = lights[index];
             vec3 light = arealight_in_scattered(medium, load_quad(record));
-            add_scattered(scattered, medium, index, record.center, light);
+            add_scattered(scattered, medium, index, record.center, 0.0, light);
         }
     }
     if (HAS_POLYGONS) {
         for (uint place = list.quad_count; place < list.light_count; place++) {
             uint index = cell_light(list, place);
             ArealightGpuLight record = lights[index];
-            add_scattered(scattered, medium, index, record.center, in_scattered(medium, record));
+            add_scattered(scattered, medium, index, record.center, 0.0, in_scattered(medium, record));
         }
     }
     if (HAS_SHAPES) {
         for (uint place = 0u; place < list.shape_count; place++) {
             uint index = cell_light(list, list.light_count + place);
             ArealightGpuShape record = shapes[index];
-            add_scattered(scattered, medium, PICK_SHAPE | index, record.center, in_scattered(medium, record));
+            // By how much the mean of what is seen from afar is nearer than the center
+            float depth = record.kind == SHAPE_SPHERE ? 2.0 / 3.0
+                : record.kind == SHAPE_TUBE ? 0.25 * AREALIGHT_PI : 0.0;
+            add_scattered(scattered, medium, PICK_SHAPE | index, record.center, depth * record.radius,
+                          in_scattered(medium, record));
         }
     }
     if (MEDIUM_RAYS == RAY_A_FROXEL && scattered.pick != NO_PICK) {

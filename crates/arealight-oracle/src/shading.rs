@@ -366,7 +366,13 @@ pub fn ltc_on(
                 DVec3::splat((emitted(signed, light.two_sided) / share).min(most))
             }
             Some(image) => {
-                let signed = transformed_image_integral(inverse, &seen, image, both_horizons);
+                let mut signed = transformed_image_integral(inverse, &seen, image, both_horizons);
+                if let Some(profile) = &light.profile {
+                    // The profile's mean over the light, as without the image
+                    let all = transformed_form_factor(inverse, &visible);
+                    let shaped = profiled::profiled((profile, azimuth), &seen, &visible, inverse);
+                    signed *= if all == 0.0 { 0.0 } else { shaped / all };
+                }
                 signed.to_array().map(|channel| emitted(channel, light.two_sided) / share).into()
             }
         }
@@ -386,7 +392,7 @@ pub fn ltc_on(
         None if inverse == DMat3::IDENTITY && light.profile.is_none() => {
             DVec3::splat(emitted(form_factor(&seen), light.two_sided))
         }
-        Some(image) if inverse == DMat3::IDENTITY => {
+        Some(image) if inverse == DMat3::IDENTITY && light.profile.is_none() => {
             let signed = transformed_image_integral(&inverse, &seen, image, false);
             signed.to_array().map(|channel| emitted(channel, light.two_sided)).into()
         }

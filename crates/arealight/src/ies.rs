@@ -65,7 +65,10 @@ impl IesProfile {
         if text.len() > MOST_BYTES {
             return bad("file", format!("{} bytes, at most {MOST_BYTES}", text.len()));
         }
+        let text = text.replace('\r', "\n");
         let mut lines = text.lines();
+        let first = text.lines().next().map(|line| line.trim_start_matches('\u{feff}').trim());
+        let version = first.filter(|line| line.starts_with("IES"));
         let tilt = lines.find_map(|line| line.trim().strip_prefix("TILT=").map(str::trim));
         let Some(tilt) = tilt else { return bad("TILT", "there is no line that begins with TILT=".into()) };
         let rest: Vec<&str> = lines.collect();
@@ -105,7 +108,10 @@ impl IesProfile {
         };
         let sizes = [next("width")?, next("length")?, next("height")?];
         let ballast = next("ballast factor")?;
-        let _future = next("future use")?;
+        // Before 1995 a second factor; for future use since then
+        let is_early = version.is_none_or(|version| version == "IESNA91");
+        let second = next("ballast-lamp factor or future use")?;
+        let ballast = if is_early { ballast * second } else { ballast };
         let _watts = next("watts")?;
         let vertical = angles("vertical angles", vertical_count, &mut next)?;
         let horizontal = angles("horizontal angles", horizontal_count, &mut next)?;
@@ -280,6 +286,13 @@ mod tests {
         assert_eq!((lambert.opening, lambert.is_round_opening), ([0.2, 0.2, 0.0], true));
         let (profile, candela) = lambert.profile(4).unwrap();
         assert!((candela * profile.factor(1.0) / 100.0 - 1.0).abs() < 5e-3, "{candela}");
+        // Before 1995 the number after the ballast's factor is one more; lines may end as on old machines
+        let text = file(&angles, "0", &of(&|a| 100.0 * a.cos().max(0.0))).replace("0.5 1 40", "0.5 0.8 40");
+        for (version, factor) in [("IESNA:LM-63-2002", 1.0), ("IESNA91", 0.8), ("[OLD]", 0.8)] {
+            let text = text.replace("IESNA:LM-63-2002", version).replace('\n', "\r");
+            let lumens = IesProfile::parse(&text).unwrap().lumens()[0];
+            assert!((lumens / lambert.lumens()[0] / factor - 1.0).abs() < 1e-12, "{version}: {lumens}");
+        }
         // A batwing
         let batwing = of(&|a| 50.0 + 200.0 * (2.0 * a).sin().powi(2) * a.cos());
         let batwing = IesProfile::parse(&file(&angles, "0", &batwing)).unwrap();

@@ -44,7 +44,7 @@ impl Opening {
     /// square about it, and for other lengths and angles.
     pub fn doors(shape: &LightShape, length: f64, angle: f64) -> Result<Self, LightFault> {
         if !(length > 0.0 && length.is_finite() && (0.0..FRAC_PI_2 - 1e-3).contains(&angle)) {
-            return Err(bad(format!("doors of {length} opened by {angle} rad: above 0, from 0 to pi / 2")));
+            return Err(bad(format!("doors of {length} opened by {angle} rad: above 0, from 0 to 1.569")));
         }
         let (u, v) = half_axes(shape)?;
         let (sin, cos) = angle.sin_cos();

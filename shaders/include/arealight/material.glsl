@@ -125,6 +125,9 @@ ArealightPoint arealight_point(ArealightSurface surface) {
         surface = arealight_without_film(surface, frame.cos_view);
     }
     point.lobes[AREALIGHT_LOBE_DIFFUSE] = arealight_surface_diffuse_lobe(frame, surface);
+    if (AREALIGHT_RESCATTERS && !bool(AREALIGHT_DIFFUSE)) {
+        point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo = vec3(0.0); // what is rescattered comes to it
+    }
     if (AREALIGHT_HAS_SPECULAR) {
         ArealightTableSample table = arealight_put_specular_lobes(point, frame, surface);
         if (AREALIGHT_HAS_HALF_VECTORS) {

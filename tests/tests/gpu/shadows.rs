@@ -5,6 +5,7 @@ use arealight_oracle::visibility::visible_parts;
 use arealight_tests::globe::icosphere;
 use arealight_tests::prelude::*;
 use arealight_tests::shadow_patch::{PatchPasses, PatchShadows, ShadowPatch};
+use arealight_tool_kernels::light_sampling::triangles_of;
 
 const RAYS: u32 = 4;
 
@@ -145,7 +146,7 @@ fn half_of_every_symmetric_light_arrives_where_half_of_it_is_hidden() {
     }
 }
 
-/// What a patch reflects of a quad by the oracle: of its visible parts, and of all of it.
+/// What a patch reflects of an outline by the oracle: of its visible parts, and of all of it.
 fn exact(light: &Light, patch: &ShadowPatch) -> [DVec3; 2] {
     let table = LightTable::ggx();
     let whole = RelativeLight::new(light, DVec3::ZERO);
@@ -155,28 +156,47 @@ fn exact(light: &Light, patch: &ShadowPatch) -> [DVec3; 2] {
         let part = RelativeLight { vertices, ..whole.clone() };
         ltc_on(Quality::default(), &table, &surface, DVec3::Z, patch.view.as_dvec3(), &part)
     };
-    let visible = visible_parts(&whole.vertices, &blockers).into_iter().map(of).sum();
+    let triangles = triangles_of(&whole.vertices);
+    let triangle = |corners: &[u32]| corners.iter().map(|i| whole.vertices[*i as usize]).collect::<Vec<_>>();
+    let parts = triangles.chunks(3).flat_map(|corners| visible_parts(&triangle(corners), &blockers));
+    let visible = parts.map(of).sum();
     [visible, of(whole.vertices.clone())]
 }
 
 #[test]
-fn what_arrives_of_a_quad_is_what_the_oracle_sees_of_it() {
+fn what_arrives_of_outlines_is_what_the_oracle_sees_of_them() {
     let Some(engine) = TestEngine::new() else { return };
-    let light = flat(1.5, &[[-0.3, -0.6], [-0.4, 0.6], [1.5, 0.9], [1.5, -0.6]]);
+    let quad = flat(1.5, &[[-0.3, -0.6], [-0.4, 0.6], [1.5, 0.9], [1.5, -0.6]]);
+    // Concave, of which more is hidden on one side than on the other
+    let star = [
+        [-0.5, -0.9],
+        [-0.1, -0.2],
+        [-0.6, 0.8],
+        [0.3, 0.1],
+        [1.5, 0.9],
+        [0.8, -0.1],
+        [1.4, -0.9],
+        [0.4, -0.4],
+    ];
+    let star = flat(1.5, &star);
     let at = |x: f32, y: f32| Vec3::new(x, y, 0.5);
     let blockers =
         vec![[at(0.2, -0.1), at(0.5, 0.05), at(0.2, 0.35)], [at(-0.2, -0.2), at(0.2, -0.05), at(0.0, 0.2)]];
     let passes = PatchPasses::new(&engine, options(), ShadowFilter::Off);
     let mut largest = 0.0_f64;
-    for (surface, material, view) in surfaces() {
+    for ((surface, material, view), light) in
+        surfaces().into_iter().flat_map(|surface| [(surface, &quad), (surface, &star)])
+    {
         let patch = ShadowPatch { material, view, lights: vec![light.clone()], blockers: blockers.clone() };
         let found = patch.run(&passes).mean();
-        let [exact, whole] = exact(&light, &patch).map(|radiance| radiance.dot(LUMINANCE));
+        let [exact, whole] = exact(light, &patch).map(|radiance| radiance.dot(LUMINANCE));
         let exact = exact / whole;
         assert!((0.05..0.95).contains(&exact), "{surface}: {exact}, the case says nothing");
         largest = largest.max((found - exact).abs());
         // As above
-        assert!((found - exact).abs() < 4e-3, "{surface}: {found} and {exact}");
+        // As above; where draws are refused rays are as random
+        let bound = if light == &star { 1.2e-2 } else { 4e-3 };
+        assert!((found - exact).abs() < bound, "{surface}: {found} and {exact}");
     }
     println!("largest error {largest:.1e}");
 }

@@ -432,6 +432,22 @@ impl Case {
         Ok(MediumCase { name: self.name.clone(), anisotropy, view: self.view, light, image })
     }
 
+    /// The case with the polygon that stands for its light, if that is a disk with a profile or an opening:
+    /// [`Light::outlined`].
+    #[must_use]
+    pub fn outlined(&self) -> Self {
+        let mut case = self.clone();
+        if let CaseShape::Disk { center, axis_u, axis_v, texture: None } = self.light.shape {
+            let (profile, opening) = (self.light.profile.clone(), self.light.opening);
+            let shape = LightShape::Disk { center, axis_u, axis_v };
+            let disk = Light { profile, opening, shape, ..Light::default() };
+            if let LightShape::Polygon(vertices) = disk.outlined().into_owned().shape {
+                case.light.shape = CaseShape::Polygon { vertices, texture: None };
+            }
+        }
+        case
+    }
+
     /// The light relative to the point, with its image.
     fn unblocked_light(
         &self,

@@ -11,6 +11,7 @@ use crate::openings;
 use arealight::{IesProfile, Light, LightShape, Profile};
 use glam::Vec3;
 use serde::Deserialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::f64::consts::PI;
@@ -21,6 +22,8 @@ struct IesLight {
     name: Option<String>,
     uri: Option<String>,
     buffer_view: Option<usize>,
+    #[serde(default)]
+    extras: Value,
 }
 
 /// What a node says of its luminaire.
@@ -67,8 +70,10 @@ pub(crate) fn lights(
             }
             unread.insert(read.map_err(|problem| format!("{field}: {problem}")));
         }
-        let made =
-            files[&place].as_ref().map_err(Clone::clone).and_then(|file| make(file, node, size, &name));
+        let made = files[&place]
+            .as_ref()
+            .map_err(Clone::clone)
+            .and_then(|file| make(file, node, size, &name, &light.extras["arealight"]));
         match made {
             Ok(behind) => lights.extend(behind),
             Err(problem) => messages.warn(format!("light '{name}'"), format!("{problem}: left out")),
@@ -103,7 +108,13 @@ fn warn_of_upward_light(file: &IesProfile, name: &str, messages: &mut Messages) 
 }
 
 /// A luminaire's light, or of a grid its lights, or why there is none. It shines along -Z; azimuth 0 is +X.
-fn make(of: &Luminaire, node: &PlacedNode, size: Option<f64>, name: &str) -> Result<Vec<Light>, String> {
+fn make(
+    of: &Luminaire,
+    node: &PlacedNode,
+    size: Option<f64>,
+    name: &str,
+    extras: &Value,
+) -> Result<Vec<Light>, String> {
     let said = node.ies_light.as_ref().map(Instance::deserialize).transpose();
     let Instance { multiplier, color } = said.map_err(|error| error.to_string())?.unwrap_or_default();
     if !(0.0..1e30).contains(&multiplier) {
@@ -119,14 +130,16 @@ fn make(of: &Luminaire, node: &PlacedNode, size: Option<f64>, name: &str) -> Res
             (LightShape::Polygon(vertices), width * length)
         }
         (true, _, _) | (_, _, Some(_)) => {
-            let radius = if width > 0.0 { 0.5 * width } else { size.unwrap_or_default() };
-            let (axis_u, axis_v) = (radius * right, radius * front.cross(right));
-            (LightShape::Disk { center, axis_u, axis_v }, PI * radius * radius)
+            // Length along azimuth 0
+            let given = size.unwrap_or_default();
+            let [u, v] = [length, width].map(|side| if width > 0.0 { 0.5 * side.max(1e-6) } else { given });
+            let (axis_u, axis_v) = (u * right, v * front.cross(right));
+            (LightShape::Disk { center, axis_u, axis_v }, PI * u * v)
         }
         _ => return Err("its file has no size (--light-size gives it one)".into()),
     };
     let radiance = Vec3::from_array(color) * (multiplier * of.candela / (LUMENS_PER_WATT * area)) as f32;
     let profile = Some(of.profile.clone());
     let made = Light { name: name.to_owned(), radiance, shape, profile, ..Light::default() };
-    openings::behind(made, &serde_json::Value::Null, node)
+    openings::behind(made, extras, node)
 }

@@ -56,7 +56,9 @@ pub(crate) fn behind(light: Light, extras: &Value, node: &PlacedNode) -> Result<
     } else {
         Said::default()
     };
-    let scale = node.world.matrix3.z_axis.length();
+    // Of a length of the node's along the light's front
+    let front = light.shape.area_vector().normalize_or(DVec3::Z);
+    let scale = (node.world.matrix3.inverse() * front).length().recip();
     let made = match said {
         Said { doors: None, grid: None, opening: None } => Ok(vec![light]),
         Said { doors: Some(doors), grid: None, opening: None } => {

@@ -16,8 +16,8 @@
 struct ArealightShapedLight {
     ArealightPolygonLight polygon; // convex, if it has a profile
     vec3 radiance;                 // the polygon's: of the front at a factor of 1, W/(m^2 sr)
-    uint profile;                  // the first row, for arealight_bridge_profile, or AREALIGHT_NO_ROW
-    uint opening;                  // the same of its opening (with AREALIGHT_OPENINGS)
+    uint profile;                  // the first row, for arealight_bridge_profile
+    uint opening;                  // of its opening; with AREALIGHT_OPENINGS either may be AREALIGHT_NO_ROW
 };
 
 struct ArealightLocalShaped {
@@ -121,10 +121,10 @@ bool arealight_to_local(ArealightPoint point, ArealightShapedLight light, out Ar
     local.azimuth = 0u;
     local.levels = 0u;
     local.levels_end = 0u;
-    if (!arealight_has_profile(light.profile)) {
+    if (!lit || !arealight_has_profile(light.profile)) {
         return lit;
     }
-    lit = arealight_find_range(local, height) && lit;
+    lit = arealight_find_range(local, height);
     vec4 head = arealight_bridge_profile(light.profile);
     local.scale = head.x;
     local.piece_scale = head.z;
@@ -373,13 +373,49 @@ vec3 arealight_image_average(mat3 space, ArealightLocalShaped local, vec3 vector
 }
 
 #if AREALIGHT_SOLID_ANGLES
-// Times the part that is seen and the profile's mean there, as a cosine about its center sees the light.
+// Of what an opening leaves of the outline: a fan about the first of its vertices.
+float arealight_seen_solid_angle(ArealightLocalShaped local) {
+    float height = dot(local.normal, local.polygon.center);
+    uint count = local.polygon.end - local.polygon.first;
+    ArealightOpeningWalk walk = arealight_opening_walk();
+    bool begun = false;
+    vec3 origin = vec3(0.0);
+    ArealightFanVertex from = ArealightFanVertex(vec3(0.0), vec3(0.0));
+    vec3 apex = from.unit;
+    vec2 turn = vec2(1.0, 0.0);
+    for (uint step = 0u; step <= count; step++) {
+        bool closes = step == count;
+        vec3 vertex = local.foot + arealight_from_foot(local, local.polygon.first + (closes ? 0u : step));
+        ArealightOpeningPart seen = arealight_opening_step(walk, local.opening, vertex, closes);
+        int vertices = arealight_opening_count(seen);
+        for (int index = 0; index < vertices; index++) {
+            vec3 b = arealight_opening_vertex(local.opening, seen, index);
+            b *= height / dot(local.normal, b);
+            origin = begun ? origin : b;
+            ArealightFanVertex to = arealight_fan_vertex(b, b - origin);
+            apex = begun ? apex : to.unit;
+            turn = begun ? arealight_fan_turned(turn, apex, from, to) : turn;
+            from = to;
+            begun = true;
+        }
+    }
+    return arealight_fan_solid_angle(turn);
+}
+
+// Of what is seen, times the profile's mean there as a cosine about the light's center sees it.
 float arealight_solid_angle(ArealightLocalShaped local) {
+    bool is_clipped = AREALIGHT_HAS_OPENINGS && local.opening.is_between;
+    float seen = is_clipped ? arealight_seen_solid_angle(local) : arealight_solid_angle(local.polygon);
+    if (!arealight_has_profile(local.profile)) {
+        return seen;
+    }
     vec3 center = local.polygon.center;
     mat3 space = arealight_frame_matrix(arealight_surface_frame(center, center));
-    float all = length(arealight_vector_form_factor(space, local.polygon));
-    float mean = length(arealight_vector_form_factor(space, local)) / max(all, 1e-30);
-    return min(mean, 1.0) * arealight_solid_angle(local.polygon);
+    float front = AREALIGHT_HAS_TWO_SIDED ? local.polygon.side : 1.0;
+    vec3 all = is_clipped ? arealight_level_vector(space, local, AREALIGHT_NO_RIM, front)
+                          : arealight_vector_form_factor(space, local.polygon);
+    float mean = length(arealight_vector_form_factor(space, local)) / max(length(all), 1e-30);
+    return min(mean, 1.0) * seen;
 }
 #endif
 

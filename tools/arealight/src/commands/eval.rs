@@ -206,6 +206,7 @@ fn supported(
     case: &Case,
     load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
 ) -> Result<Supported, String> {
+    let case = &case.outlined();
     if matches!(case.material, CaseMaterial::Medium { .. }) {
         return case.supported_medium(load).map(Supported::Medium).map_err(|error| error.to_string());
     }

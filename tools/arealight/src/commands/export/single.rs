@@ -21,6 +21,8 @@ pub const LICENCE_LINE: &str = concat!(
 pub fn resolved(mut text: String, effects: Effects) -> String {
     let kinds = [("LIGHT_TEXTURES", Effects::IMAGES), ("SHAPED", Effects::SHAPED)];
     let kinds = kinds.map(|(option, any)| (option.to_owned(), effects.intersects(any)));
+    // What shows an image is a polygon, of four vertices too
+    let effects = if effects.contains(Effects::TEXTURED) { effects | Effects::POLYGON } else { effects };
     let options = Effects::all().iter().map(|effect| (option_of(effect), effects.contains(effect)));
     for (option, is_on) in options.chain(kinds) {
         let define = |value: u8| format!("#define AREALIGHT_{option} {value}\n");
