@@ -193,7 +193,6 @@ fn what_arrives_of_outlines_is_what_the_oracle_sees_of_them() {
         let exact = exact / whole;
         assert!((0.05..0.95).contains(&exact), "{surface}: {exact}, the case says nothing");
         largest = largest.max((found - exact).abs());
-        // As above
         // As above; where draws are refused rays are as random
         let bound = if light == &star { 1.2e-2 } else { 4e-3 };
         assert!((found - exact).abs() < bound, "{surface}: {found} and {exact}");
