@@ -70,7 +70,7 @@ float ray_arrives(uint pick, vec3 position, vec2 random) {
 
 // Adds what is scattered of the light of an index, of PICK_SHAPE or 0.
 //
-// On its way to the froxel it is dimmed as on that from its center, less `depth`, by a medium that is as here.
+// On its way to the froxel it is dimmed as on that from its center, less `depth`, by what is here.
 void add_scattered(inout Scattered scattered, ArealightMediumPoint medium, uint index, vec3 center,
                    float depth, vec3 light) {
     vec3 position = medium.point.position;

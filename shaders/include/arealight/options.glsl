@@ -13,8 +13,8 @@
 #define AREALIGHT_SPECULAR 1
 #endif
 // The diffuse lobe gets what the specular one's Fresnel term leaves, as in glTF:
-// ArealightSurface.interface_f0, interface_f90. Else the two are added, as many engines do. And by albedo: it
-// gets what the specular lobe does not reflect of the view, as in OpenPBR.
+// ArealightSurface.interface_f0, interface_f90. Else the two are added, as many engines do. And by albedo:
+// with AREALIGHT_SPECULAR it gets what that lobe does not reflect of the view, as in OpenPBR.
 #ifndef AREALIGHT_COUPLED
 #define AREALIGHT_COUPLED 0
 #endif
@@ -120,7 +120,8 @@
 #define AREALIGHT_LIGHT_TEXTURES 0
 #endif
 
-// Points in a medium, by Henyey and Greenstein's phase function: medium.glsl.
+// Points in a medium, by Henyey and Greenstein's phase function: medium.glsl. It has no
+// AREALIGHT_SURFACE_HORIZON, nor have surfaces beside it.
 #ifndef AREALIGHT_MEDIA
 #define AREALIGHT_MEDIA 0
 #endif

@@ -1,6 +1,7 @@
 //! Points in a medium under lights of every kind: against the reference, the float64 twin, and what must be
 //! so.
 
+use arealight::Opening;
 use arealight_benches::pictures;
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{MediumCase, read_cases};
@@ -88,7 +89,8 @@ fn the_reference_is_met_by_family() {
 
 /// A light of a kind at some place, seen from the front.
 fn any_light(random: &mut Random, kind: usize) -> Light {
-    let center = random.direction() * random.between(0.6, 6.0);
+    // All of a light is on the other side of its opening
+    let center = random.direction() * random.between(if kind == 8 { 3.0 } else { 0.6 }, 6.0);
     let (u, v) = random.direction().any_orthonormal_pair();
     let mut size = |most: f64| random.between(0.1, most);
     let mut lamp = light(match kind {
@@ -105,6 +107,11 @@ fn any_light(random: &mut Random, kind: usize) -> Light {
         _ => LightShape::Polygon(random.polygon(center, kind - 2, 0.1, 1.5)),
     });
     lamp.two_sided = random.unit() < 0.3;
+    if kind == 8 {
+        let axes = center.normalize().any_orthonormal_pair();
+        let (axis_u, axis_v) = (axes.0 * 0.2, axes.1 * 0.15);
+        lamp.opening = Some(Opening { center: 0.2 * center, axis_u, axis_v, housed: false });
+    }
     lamp
 }
 
@@ -112,8 +119,9 @@ fn any_light(random: &mut Random, kind: usize) -> Light {
 fn every_kind_agrees_with_its_twin() {
     let Some(engine) = TestEngine::new() else { return };
     let mut random = Random::new(71);
-    let kinds = ["disk", "sphere", "open tube", "capped tube", "capsule", "triangle", "quad", "pentagon"];
-    for (kind, name) in kinds.into_iter().enumerate() {
+    let round = ["disk", "sphere", "open tube", "capped tube", "capsule"];
+    let flat = ["triangle", "quad", "pentagon", "hexagon behind an opening"];
+    for (kind, name) in round.into_iter().chain(flat).enumerate() {
         let points: Vec<MediumPoint> = (0..300)
             .map(|_| {
                 let light = any_light(&mut random, kind);

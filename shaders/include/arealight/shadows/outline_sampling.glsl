@@ -113,8 +113,8 @@ ivec2 arealight_outline_coverage(ArealightShadowOutline outline, vec3 direction)
 // surface.
 const int AREALIGHT_OUTLINE_TRIES = 32;
 
-// Two other numbers in [0, 1), as if random, by the 24 bits of two. A shift of what was refused would draw some
-// of the outline more often than it is to be. Source: pcg2d, Jarzynski and Olano 2020.
+// Two other numbers in [0, 1), as if random, by the 24 bits of two. A shift of what was refused would draw
+// some of the outline more often than it is to be. Source: pcg2d, Jarzynski and Olano 2020.
 vec2 arealight_other_random(vec2 random) {
     uvec2 bits = uvec2(random * 16777216.0) * 1664525u + 1013904223u;
     for (int round = 0; round < 2; round++) {

@@ -41,7 +41,8 @@ struct ArealightImage {
 
 // The host's bridge to the light textures: part `part` of layer `layer`, trilinear and clamped to the edge,
 // at normalised coordinates, level explicit; textureLod of an array image. Part 0 is the image with its mips,
-// 1 is A, 2 and 3 are B along rows and columns; with AREALIGHT_FOOTPRINT_MIPS there is part 0 alone.
+// 1 is A, 2 and 3 are B along rows and columns; with AREALIGHT_FOOTPRINT_MIPS there is part 0 alone. Alpha is
+// coverage, 1 in an image: colours are divided by it.
 vec4 arealight_bridge_light_texture(uint layer, uint part, vec2 coordinate, float level);
 // Width and height of level 0, in texels.
 int arealight_bridge_light_texture_side();

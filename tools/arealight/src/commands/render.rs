@@ -58,7 +58,7 @@ pub struct Arguments {
     supersample: u32,
     /// What surfaces are shaded with: `required` (what the scene's need), or a list of `diffuse`, `glossy`
     /// and `specular_input`, such as diffuse
-    #[arg(long, value_name = "SET", default_value = "required")]
+    #[arg(long, value_name = "SET", default_value = "required", conflicts_with = "reference")]
     surfaces: SurfaceChoice,
     /// How layers of surfaces share light
     #[arg(long, value_enum, value_name = "MODEL", default_value = "gltf")]

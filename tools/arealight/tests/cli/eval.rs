@@ -440,3 +440,33 @@ fn an_image_keeps_its_range_whatever_the_other_images_are() {
         }
     }
 }
+
+#[test]
+fn disks_have_their_profile_and_opening_and_images_their_profile() {
+    // Half of the light, whatever the angle
+    let half = r#""profile": [[0, 0.5], [90, 0.5]]"#;
+    let disk = r#""type": "disk", "radiance": [1, 1, 1], "center": [0, 0, 1], "axis_u": [0, 0.5, 0],
+        "axis_v": [0.5, 0, 0]"#;
+    let opening = r#""opening": { "center": [0, 0, 0.5], "axis_u": [0.1, 0, 0], "axis_v": [0, 0.1, 0] }"#;
+    let case = |name: &str, light: &str| {
+        format!(
+            r#"{{ "name": "{name}", "position": [0, 0, 0], "normal": [0, 0, 1], "view": [0, 0, 1],
+            "bsdf": "diffuse", "albedo": [1, 1, 1], "light": {{ {light} }} }}"#
+        )
+    };
+    let cases = [
+        case("whole", disk),
+        case("half", &format!("{disk}, {half}")),
+        case("through a window", &format!("{disk}, {opening}")),
+    ];
+    let file = write("disks.json", &format!(r#"{{ "cases": [{}] }}"#, cases.join(",")));
+    for method in methods(["oracle", "truth", "gpu"], |name| name) {
+        let found = answers(&[&file, "--on", method]);
+        let found: Vec<f64> = found.iter().map(|answer| answer["radiance"][0].as_f64().unwrap()).collect();
+        // A window of .2 at .5 is seen as one of .4 at 1: 0.0483570
+        for (found, expected) in found.iter().zip([0.2, 0.1, 0.048_357_0]) {
+            // Twelve corners for the disk
+            assert!((found / expected - 1.0).abs() < 1e-4, "{method}: {found} and {expected}");
+        }
+    }
+}
