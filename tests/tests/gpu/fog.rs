@@ -108,7 +108,7 @@ fn any_light(random: &mut Random, kind: usize) -> Light {
     });
     lamp.two_sided = random.unit() < 0.3;
     if kind == 8 {
-        let axes = center.normalize().any_orthonormal_pair();
+        let axes = center.normalize_or(DVec3::Z).any_orthonormal_pair();
         let (axis_u, axis_v) = (axes.0 * 0.2, axes.1 * 0.15);
         lamp.opening = Some(Opening { center: 0.2 * center, axis_u, axis_v, housed: false });
     }

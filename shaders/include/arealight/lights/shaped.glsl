@@ -70,7 +70,7 @@ bool arealight_find_range(inout ArealightLocalShaped local, float height) {
     vec3 toward = arealight_normalize_or(local.polygon.center - local.foot, vec3(0.0));
     local.holds_foot = true;
     bool begun = !is_clipped;
-    vec3 before = arealight_from_foot(local, local.polygon.end - 1u);
+    vec3 before = arealight_from_foot(local, max(local.polygon.end, 1u) - 1u);
     vec3 a = before;
     vec3 first = before;
     for (uint step = 0u; step < count + uint(is_clipped); step++) {
@@ -121,10 +121,10 @@ bool arealight_to_local(ArealightPoint point, ArealightShapedLight light, out Ar
     local.azimuth = 0u;
     local.levels = 0u;
     local.levels_end = 0u;
-    if (!lit || !arealight_has_profile(light.profile)) {
+    if (!arealight_has_profile(light.profile)) {
         return lit;
     }
-    lit = arealight_find_range(local, height);
+    lit = arealight_find_range(local, height) && lit;
     vec4 head = arealight_bridge_profile(light.profile);
     local.scale = head.x;
     local.piece_scale = head.z;
@@ -405,17 +405,16 @@ float arealight_seen_solid_angle(ArealightLocalShaped local) {
 // Of what is seen, times the profile's mean there as a cosine about the light's center sees it.
 float arealight_solid_angle(ArealightLocalShaped local) {
     bool is_clipped = AREALIGHT_HAS_OPENINGS && local.opening.is_between;
-    float seen = is_clipped ? arealight_seen_solid_angle(local) : arealight_solid_angle(local.polygon);
-    if (!arealight_has_profile(local.profile)) {
-        return seen;
+    float mean = 1.0;
+    if (arealight_has_profile(local.profile)) {
+        vec3 center = local.polygon.center;
+        mat3 space = arealight_frame_matrix(arealight_surface_frame(center, center));
+        float front = AREALIGHT_HAS_TWO_SIDED ? local.polygon.side : 1.0;
+        vec3 all = is_clipped ? arealight_level_vector(space, local, AREALIGHT_NO_RIM, front)
+                              : arealight_vector_form_factor(space, local.polygon);
+        mean = min(length(arealight_vector_form_factor(space, local)) / max(length(all), 1e-30), 1.0);
     }
-    vec3 center = local.polygon.center;
-    mat3 space = arealight_frame_matrix(arealight_surface_frame(center, center));
-    float front = AREALIGHT_HAS_TWO_SIDED ? local.polygon.side : 1.0;
-    vec3 all = is_clipped ? arealight_level_vector(space, local, AREALIGHT_NO_RIM, front)
-                          : arealight_vector_form_factor(space, local.polygon);
-    float mean = length(arealight_vector_form_factor(space, local)) / max(length(all), 1e-30);
-    return min(mean, 1.0) * seen;
+    return mean * (is_clipped ? arealight_seen_solid_angle(local) : arealight_solid_angle(local.polygon));
 }
 #endif
 
