@@ -115,10 +115,7 @@ vec3 all_scattered(Scattered scattered, ArealightMediumPoint medium, CellList li
         for (uint place = 0u; place < list.shape_count; place++) {
             uint index = cell_light(list, list.light_count + place);
             ArealightGpuShape record = shapes[index];
-            // By how much the mean of what is seen from afar is nearer than the center
-            float depth = record.kind == SHAPE_SPHERE ? 2.0 / 3.0
-                : record.kind == SHAPE_TUBE ? 0.25 * AREALIGHT_PI : 0.0;
-            add_scattered(scattered, medium, PICK_SHAPE | index, record.center, depth * record.radius,
+            add_scattered(scattered, medium, PICK_SHAPE | index, record.center, seen_depth(record),
                           in_scattered(medium, record));
         }
     }

@@ -26,4 +26,11 @@ vec3 in_scattered(ArealightMediumPoint medium, ArealightGpuShape record) {
     return HAS_DISKS ? arealight_in_scattered(medium, load_disk(record)) : vec3(0.0);
 }
 
+// By how much the mean of what is seen of a light from afar is nearer than its center.
+float seen_depth(ArealightGpuShape record) {
+    float part = record.kind == SHAPE_SPHERE ? 2.0 / 3.0
+        : record.kind == SHAPE_TUBE ? 0.25 * AREALIGHT_PI : 0.0;
+    return part * record.radius;
+}
+
 #endif

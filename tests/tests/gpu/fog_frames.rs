@@ -143,6 +143,27 @@ fn froxels_are_near_to_monte_carlo() {
 }
 
 #[test]
+fn spheres_shine_from_their_near_side() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut scene = scene("slats.glb");
+    let camera = scene.camera(None, 16.0 / 9.0).unwrap();
+    let shape = LightShape::Sphere { center: camera.position + 5.0 * camera.forward, radius: 0.5 };
+    scene.lights = vec![Light { radiance: Vec3::splat(5.0), shape, ..Light::default() }];
+    scene.lamps.clear();
+    let fog = Fog { density: 0.6, ..FOG };
+    let clear = picture(&engine, &scene, |_, _| ());
+    let found = picture(&engine, &scene, |r, s| add_fog(r, s, &fog, [64, 36, 128], (4, false, 1)));
+    let truth = picture(&engine, &scene, |r, _| _ = r.fog_reference(&fog, 1024, (false, 0), |_| ()).unwrap());
+    let error = difference(&clear, &found, &truth);
+    // The twin: dimmed as from the center
+    let dim: Vec<Vec4> = found.iter().map(|texel| *texel * (-0.6 * 0.5 * 2.0 / 3.0_f32).exp()).collect();
+    let dimmed = difference(&clear, &dim, &truth);
+    println!("{error:.3}; from the center {dimmed:.3}");
+    // Of a froxel a pixel, beside the sphere too
+    assert!(error < 0.08 && dimmed > 0.2, "{error} {dimmed}");
+}
+
+#[test]
 fn no_fog_changes_nothing_and_much_of_it_gives_numbers() {
     let Some(engine) = TestEngine::new() else { return };
     let scene = scene("slats.glb");
