@@ -79,6 +79,23 @@ fn a_white_rough_metal_sends_all_that_it_gets() {
 }
 
 #[test]
+fn without_the_diffuse_lobe_there_is_none_of_it() {
+    let Some(engine) = TestEngine::new() else { return };
+    let shade = |surfaces, color: [f32; 4]| {
+        let mut pixel = OnePixel::new(&engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5);
+        pixel.set(Plane::BaseColor, vk::Format::R32G32B32A32_SFLOAT, color);
+        let options = ShadeOptions { surfaces, ..ShadeOptions::default() };
+        pixel.shade(options, &[lamp()], Vec3::new(0.0, -1.0, 1.0), None)
+    };
+    let [black, white] = [[0.0; 4], [1.0, 1.0, 1.0, 0.0]];
+    let glossy = Effects::GLOSSY | Effects::MULTIPLE_SCATTERING;
+    assert_eq!(shade(glossy, white), shade(glossy, black));
+    // The twin: with it there is
+    let both = glossy | Effects::DIFFUSE;
+    assert!(shade(both, white).x > shade(both, black).x + 0.01);
+}
+
+#[test]
 fn it_is_a_choice_of_model_with_a_name() {
     assert!(Effects::MODEL.contains(Effects::MULTIPLE_SCATTERING));
     assert_eq!(Effects::MULTIPLE_SCATTERING.to_string(), "multiple_scattering");

@@ -136,6 +136,21 @@ fn each_instance_of_a_mesh_is_there_and_shines() {
 }
 
 #[test]
+fn doors_of_a_mesh_are_as_long_as_the_node_is_along_its_front() {
+    // A panel that faces +Y
+    let mut shape = panel(2.0, 1.0);
+    for vector in shape.positions.iter_mut().chain(&mut shape.normals) {
+        vector.rotate_left(1);
+    }
+    for (scale, length) in [([1, 2, 1], 0.6), ([1, 1, 2], 0.3)] {
+        let said = json!({ "arealight": { "doors": { "length": 0.3, "angle": 0.0 } } });
+        let scene = load(emitter_with(&shape, json!({ "scale": scale, "extras": said })));
+        let over = scene.lights[0].opening.unwrap().center - scene.lights[0].shape.center();
+        assert!((over - DVec3::Y * length).length() < 1e-6, "{over}");
+    }
+}
+
+#[test]
 fn instances_of_a_shape_are_lights_of_their_own() {
     let mut writer = instanced();
     writer.root["nodes"][0]["extras"] = json!({ "arealight": { "shape": "sphere", "radius": 1 } });
