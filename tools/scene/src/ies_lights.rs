@@ -130,9 +130,9 @@ fn make(
             (LightShape::Polygon(vertices), width * length)
         }
         (true, _, _) | (_, _, Some(_)) => {
-            // Length along azimuth 0
-            let given = size.unwrap_or_default();
-            let [u, v] = [length, width].map(|side| if width > 0.0 { 0.5 * side.max(1e-6) } else { given });
+            // Length along azimuth 0; a circle may say its width alone
+            let across = if width > 0.0 { 0.5 * width } else { size.unwrap_or_default() };
+            let (u, v) = (if length > 0.0 { 0.5 * length } else { across }, across);
             let (axis_u, axis_v) = (u * right, v * front.cross(right));
             (LightShape::Disk { center, axis_u, axis_v }, PI * u * v)
         }

@@ -82,6 +82,22 @@ fn a_luminaire_has_its_file_s_size_candela_and_lumens() {
 }
 
 #[test]
+fn round_openings_are_circles_or_ellipses() {
+    for (sizes, axes) in
+        [("-0.16 -0.16", [0.08, 0.08]), ("-0.16 0", [0.08, 0.08]), ("-0.16 -0.4", [0.2, 0.08])]
+    {
+        let text = ies("round").replace("-0.16 -0.16", sizes);
+        let scene = read(&text, json!({}), None).unwrap();
+        let LightShape::Disk { axis_u, axis_v, .. } = scene.lights[0].shape else { panic!("no disk") };
+        let found = [axis_u, axis_v].map(DVec3::length);
+        assert!(
+            found.iter().zip(axes).all(|(found, axis)| (found - axis).abs() < 1e-9),
+            "{sizes}: {found:?}"
+        );
+    }
+}
+
+#[test]
 fn what_of_a_luminaire_cannot_be_is_said() {
     let round = ies("round");
     let point = round.replace("1 2 -0.16 -0.16 0", "1 2 0 0 0");
