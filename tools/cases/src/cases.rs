@@ -8,16 +8,17 @@ mod coat;
 mod fields;
 mod material;
 mod strict;
+mod supported;
 
-use arealight::{Light, LightFault, LightShape, LightTexture, Opening, Profile, TextureMap, TubeEnds};
+use arealight::{Light, Opening, Profile};
 use arealight_oracle::material::Surface;
-use arealight_oracle::shading::{RelativeLight, ShownImage};
+use arealight_oracle::shading::RelativeLight;
 use arealight_oracle::texture::Texture;
 use arealight_oracle::visibility::Blocker;
 pub use coat::CaseCoat;
 pub(crate) use fields::json;
 use fields::{Fields, each};
-use glam::{DAffine3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 pub use material::CaseMaterial;
 use std::sync::Arc;
 
@@ -108,7 +109,7 @@ pub enum CaseShape {
         /// Half axis, perpendicular to the first.
         axis_v: DVec3,
         /// Path beside the file of cases of an image that the radiance is multiplied with: as
-        /// [`LightTexture::uvs`] says.
+        /// [`arealight::LightTexture::uvs`] says.
         texture: Option<String>,
     },
     /// A sphere that emits outwards.
@@ -341,173 +342,6 @@ fn vertex_off_plane(vertices: &[DVec3]) -> Option<(usize, f64)> {
     let size = offsets.iter().map(|o| o.length()).fold(0.0, f64::max);
     let distances = offsets.iter().map(|o| o.dot(normal).abs()).enumerate();
     distances.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, distance)| *distance > 1e-3 * size)
-}
-
-/// Lights, lobes and fields that can be answered.
-impl Case {
-    /// The case as something that can be answered now: a surface of its lobes under a polygon. See
-    /// [`Case::supported_shape`] for other lights.
-    ///
-    /// `load` gives the image of a path beside the file of cases, linear, or says why it cannot; it is called
-    /// for every case that has one, so it should keep what it has loaded.
-    ///
-    /// # Errors
-    /// [`Unsupported`] with the reason, in words.
-    pub fn supported(
-        &self,
-        mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
-    ) -> Result<SupportedCase, Unsupported> {
-        let unsupported = |reason: String| Err(Unsupported { reason });
-        self.check_fields()?;
-        let (vertices, texture) = match &self.light.shape {
-            CaseShape::Polygon { vertices, texture } => (vertices, texture),
-            shape => return unsupported(format!("light.type \"{}\" is no polygon", shape.name())),
-        };
-        let surface = self.material.surface(self.tangent)?;
-        let mut light = RelativeLight {
-            vertices: vertices.iter().map(|v| *v - self.position).collect(),
-            radiance: self.light.radiance,
-            two_sided: self.light.two_sided,
-            image: None,
-            profile: self.light.profile.clone(),
-            azimuth: LightShape::Polygon(vertices.clone()).first_edge(),
-            opening: self.light.opening.map(|it| it.moved(&DAffine3::from_translation(-self.position))),
-        };
-        if let Some(texture) = texture {
-            let image = match load(&texture.path) {
-                Ok(image) => image,
-                Err(reason) => return unsupported(format!("light.texture: {}: {reason}", texture.path)),
-            };
-            match texture.map(&light.vertices) {
-                Ok(map) => light.image = Some(ShownImage { texture: image, map }),
-                Err(reason) => return unsupported(format!("light.{reason}")),
-            }
-        }
-        Ok(SupportedCase {
-            name: self.name.clone(),
-            surface,
-            normal: self.normal,
-            view: self.view,
-            light,
-            texture: texture.clone(),
-            blockers: self.blockers.iter().map(|blocker| blocker.map(|v| v - self.position)).collect(),
-        })
-    }
-
-    /// The case as [`Case::supported`] has it, if its light is a disk, a sphere or a cylinder. `load` is as
-    /// it is there.
-    ///
-    /// # Errors
-    /// [`Unsupported`] with the reason, in words.
-    pub fn supported_shape(
-        &self,
-        load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
-    ) -> Result<ShapeCase, Unsupported> {
-        if matches!(self.light.shape, CaseShape::Polygon { .. }) {
-            return Err(Unsupported { reason: "the light is a polygon".into() });
-        }
-        let (light, image) = self.unblocked_light(load)?;
-        Ok(ShapeCase {
-            name: self.name.clone(),
-            surface: self.material.surface(self.tangent)?,
-            normal: self.normal,
-            view: self.view,
-            light,
-            image,
-        })
-    }
-
-    /// The case as [`Case::supported`] has it, if its point is in a medium. `load` is as it is there.
-    ///
-    /// # Errors
-    /// [`Unsupported`] with the reason, in words.
-    pub fn supported_medium(
-        &self,
-        load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
-    ) -> Result<MediumCase, Unsupported> {
-        let CaseMaterial::Medium { anisotropy } = self.material else {
-            return Err(Unsupported { reason: "the point is on a surface".into() });
-        };
-        let (light, image) = self.unblocked_light(load)?;
-        Ok(MediumCase { name: self.name.clone(), anisotropy, view: self.view, light, image })
-    }
-
-    /// The case with the polygon that stands for its light, if that is a disk with a profile or an opening:
-    /// [`Light::outlined`].
-    #[must_use]
-    pub fn outlined(&self) -> Self {
-        let mut case = self.clone();
-        if let CaseShape::Disk { center, axis_u, axis_v, texture: None } = self.light.shape {
-            let (profile, opening) = (self.light.profile.clone(), self.light.opening);
-            let shape = LightShape::Disk { center, axis_u, axis_v };
-            let disk = Light { profile, opening, shape, ..Light::default() };
-            if let LightShape::Polygon(vertices) = disk.outlined().into_owned().shape {
-                case.light.shape = CaseShape::Polygon { vertices, texture: None };
-            }
-        }
-        case
-    }
-
-    /// The light relative to the point, with its image.
-    fn unblocked_light(
-        &self,
-        mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
-    ) -> Result<(Light, Option<Arc<Texture>>), Unsupported> {
-        self.check_fields()?;
-        if !self.blockers.is_empty() {
-            let reason = "occluders: before a light that is no polygon, or in a medium".into();
-            return Err(Unsupported { reason });
-        }
-        let shape = match &self.light.shape {
-            CaseShape::Polygon { vertices, .. } => LightShape::Polygon(vertices.clone()),
-            &CaseShape::Disk { center, axis_u, axis_v, .. } => LightShape::Disk { center, axis_u, axis_v },
-            &CaseShape::Sphere { center, radius } => LightShape::Sphere { center, radius },
-            &CaseShape::Cylinder { p0, p1, radius, caps } => {
-                // It emits outwards, whatever is said of its sides
-                let ends = if caps { TubeEnds::Flat } else { TubeEnds::Open };
-                LightShape::Tube { p0, p1, radius, ends }
-            }
-        };
-        let shown = match &self.light.shape {
-            CaseShape::Disk { texture: Some(path), .. } => Some((path, vec![])),
-            CaseShape::Polygon { texture: Some(CaseTexture { path, uv }), .. } => Some((path, uv.clone())),
-            _ => None,
-        };
-        let image = match &shown {
-            Some((path, _)) => {
-                let reason = |reason| Unsupported { reason: format!("light.texture: {path}: {reason}") };
-                Some(load(path).map_err(reason)?)
-            }
-            None => None,
-        };
-        let light = Light {
-            name: self.name.clone(),
-            radiance: self.light.radiance.as_vec3(),
-            two_sided: self.light.two_sided,
-            texture: shown.map(|(_, uvs)| LightTexture { layer: 0, uvs }),
-            profile: self.light.profile.clone(),
-            opening: self.light.opening,
-            shape,
-            ..Light::default()
-        };
-        let light = light.moved(&DAffine3::from_translation(-self.position));
-        light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;
-        Ok((light, image))
-    }
-
-    fn check_fields(&self) -> Result<(), Unsupported> {
-        match self.unknown_fields.first() {
-            Some(field) => Err(Unsupported { reason: format!("the field {field}") }),
-            None => Ok(()),
-        }
-    }
-}
-
-impl CaseTexture {
-    /// Where the image is on a polygon.
-    fn map(&self, vertices: &[DVec3]) -> Result<TextureMap, LightFault> {
-        LightTexture { layer: 0, uvs: self.uv.clone() }.map(&LightShape::Polygon(vertices.to_vec()))
-    }
 }
 
 #[cfg(test)]

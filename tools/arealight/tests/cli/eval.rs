@@ -443,6 +443,7 @@ fn an_image_keeps_its_range_whatever_the_other_images_are() {
 
 #[test]
 fn disks_have_their_profile_and_opening_and_images_their_profile() {
+    exr::prelude::write_rgb_file(temporary("half.exr"), 2, 2, |x, y| (1.0, (x + y) as f32, 0.5)).unwrap();
     // Half of the light, whatever the angle
     let half = r#""profile": [[0, 0.5], [90, 0.5]]"#;
     let disk = r#""type": "disk", "radiance": [1, 1, 1], "center": [0, 0, 1], "axis_u": [0, 0.5, 0],
@@ -454,7 +455,12 @@ fn disks_have_their_profile_and_opening_and_images_their_profile() {
             "bsdf": "diffuse", "albedo": [1, 1, 1], "light": {{ {light} }} }}"#
         )
     };
+    let image = r#""type": "polygon", "radiance": [1, 1, 1], "texture": "half.exr",
+        "vertices": [[-0.5, -0.5, 1], [-0.5, 0.5, 1], [0.5, 0.5, 1], [0.5, -0.5, 1]],
+        "uv": [[0, 1], [0, 0], [1, 0], [1, 1]]"#;
     let cases = [
+        case("image", image),
+        case("half of it", &format!("{image}, {half}")),
         case("whole", disk),
         case("half", &format!("{disk}, {half}")),
         case("through a window", &format!("{disk}, {opening}")),
@@ -464,7 +470,9 @@ fn disks_have_their_profile_and_opening_and_images_their_profile() {
         let found = answers(&[&file, "--on", method]);
         let found: Vec<f64> = found.iter().map(|answer| answer["radiance"][0].as_f64().unwrap()).collect();
         // A window of .2 at .5 is seen as one of .4 at 1: 0.0483570
-        for (found, expected) in found.iter().zip([0.2, 0.1, 0.048_357_0]) {
+        let [whole, half] = [found[0], found[1]];
+        assert!((half / whole - 0.5).abs() < 1e-6, "{method}: {half} of {whole}");
+        for (found, expected) in found[2..].iter().zip([0.2, 0.1, 0.048_357_0]) {
             // Twelve corners for the disk
             assert!((found / expected - 1.0).abs() < 1e-4, "{method}: {found} and {expected}");
         }

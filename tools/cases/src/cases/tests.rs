@@ -1,6 +1,7 @@
 //! What a file of cases may say, and what is said about one that is wrong.
 
 use super::*;
+use arealight::{LightShape, TubeEnds};
 use arealight_oracle::material::{Coat, Interface, Surface};
 
 /// There is no image beside these cases.
