@@ -158,7 +158,7 @@ fn shadows_of_frames_before_take_noise_away_until_they_are_forgotten() {
     let view = ShadeFrame { position_from_clip: Some(position_from_clip), ..floor.frame() };
     let [a, b, c] = [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].map(|[x, y]| Vec3::new(x, y, 1.0));
     let blockers = Blockers::new(&[[a, b, c]]).unwrap();
-    // Pictures by one ray a pixel, of which the last is elsewhere, or of another size, than those before
+    // A film by one ray a pixel; its last frame may be moved, or larger than the ones before
     let film = |shadow_history, count, forgets, (before, moved): ([u32; 2], f64)| {
         let options = ShadeOptions { shadow_rays: 1, ..ShadeOptions::default() };
         let shadow_filter = ShadowFilter::Off;

@@ -55,7 +55,8 @@ For example:
 Exit codes: 0 success, 1 an answer or a picture is farther from the truth than --tolerance allows, or a \
 level falls short of its promises in bench stability or misses a bar in bench textures, \
 or a kernel takes more than bench compiled --check allows, \
-2 wrong arguments, 3 a bad input file, 4 no usable Vulkan device or no window, 5 an output file cannot be written, \
+2 wrong arguments, 3 a bad input file, 4 no usable Vulkan device or no window, \
+5 an output file cannot be written, \
 6 no compiler for bench compiled, or no matplotlib for charts and pictures of tables.";
 
 #[derive(Subcommand)]

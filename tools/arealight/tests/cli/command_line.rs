@@ -337,7 +337,9 @@ fn shadows_go_on_until_their_noise_is_low() {
         rendered(name, &[&one[..], &["--seed", "1"]].concat());
     }
     assert!(pixels("a.png") == pixels("b.png") && pixels("a.png") != pixels("once.png"));
-    refuse(folder.path(), &["render", "--shadow-noise", "-1"], 2, &["--shadow-noise", "above 0"]);
+    for wrong in ["0", "-1"] {
+        refuse(folder.path(), &["render", "--shadow-noise", wrong], 2, &["--shadow-noise", "above 0"]);
+    }
 }
 
 #[test]

@@ -126,7 +126,7 @@ mod tests {
         let expected = Effects::SPECULAR_INPUT | Effects::TRANSMISSION | Effects::GLASS | Effects::LINKED;
         assert_eq!(idle, expected);
         let on = text(Effects::GLOSSY | Effects::TEXTURED);
-        for line in ["SPECULAR 1", "DIFFUSE 0", "LIGHT_TEXTURES 1", "TEXTURED_DISKS 0"] {
+        for line in ["SPECULAR 1", "DIFFUSE 0", "LIGHT_TEXTURES 1", "POLYGONS 1", "TEXTURED_DISKS 0"] {
             assert!(on.contains(&format!("#define AREALIGHT_{line}\n")), "{line}");
         }
     }
