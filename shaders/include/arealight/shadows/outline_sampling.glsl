@@ -2,6 +2,7 @@
 #define AREALIGHT_OUTLINE_SAMPLING_GLSL
 
 #include "arealight/options.glsl"
+#include "arealight/shadows/sequence.glsl"
 #include "arealight/shadows/shadow_sampling.glsl"
 
 // Shadow rays drawn over outlines of any number of vertices, as shading points see lights of every kind: a
@@ -113,18 +114,6 @@ ivec2 arealight_outline_coverage(ArealightShadowOutline outline, vec3 direction)
 // surface.
 const int AREALIGHT_OUTLINE_TRIES = 32;
 
-// Two other numbers in [0, 1), as if random, by the 24 bits of two. A shift of what was refused would draw
-// some of the outline more often than it is to be. Source: pcg2d, Jarzynski and Olano 2020.
-vec2 arealight_other_random(vec2 random) {
-    uvec2 bits = uvec2(random * 16777216.0) * 1664525u + 1013904223u;
-    for (int round = 0; round < 2; round++) {
-        bits.x += bits.y * 1664525u;
-        bits.y += bits.x * 1664525u;
-        bits ^= bits >> 16u;
-    }
-    return vec2(bits >> 8u) * 5.9604644775390625e-8;
-}
-
 // Draws a ray over an outline from a lobe whose cosine space `space` leads to from the shading frame.
 // `random` in [0, 1)^2, uniform. False where the outline has no form factor in that space, or no draw was
 // inside of it and above the surface: there is next to no light.
@@ -135,7 +124,7 @@ bool arealight_draw_ray(ArealightShadowOutline outline, mat3 to_frame, mat3 spac
     for (int i = 0; i < tries; i++) {
         // Draw in a piece
         vec2 rest = random;
-        random = arealight_other_random(random);
+        random = arealight_other_random(random); // a shift of what is refused would not be uniform
         ArealightQuad piece;
         if (!arealight_choose_piece(outline, to_space, rest.x, piece)) {
             return false;

@@ -39,4 +39,15 @@ vec2 arealight_sequence_2d(uvec2 pixel, uint ray) {
     return vec2(arealight_fraction(place.x), arealight_fraction(place.y));
 }
 
+// Two other numbers in [0, 1), as if random, by the 24 bits of two. Source: pcg2d, Jarzynski and Olano 2020.
+vec2 arealight_other_random(vec2 random) {
+    uvec2 bits = uvec2(random * 16777216.0) * 1664525u + 1013904223u;
+    for (int round = 0; round < 2; round++) {
+        bits.x += bits.y * 1664525u;
+        bits.y += bits.x * 1664525u;
+        bits ^= bits >> 16u;
+    }
+    return vec2(arealight_fraction(bits.x), arealight_fraction(bits.y));
+}
+
 #endif
