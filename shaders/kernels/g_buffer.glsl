@@ -9,6 +9,7 @@
 
 #include "arealight/options.glsl"
 #include "arealight/surface.glsl"
+#include "arealight/thin_film.glsl"
 #include "octahedron.glsl"
 
 #ifndef EFFECTS_GLSL
@@ -169,7 +170,15 @@ ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
     }
     if (IS_TRANSMITTED) {
         arealight_surface_let_through(surface, base_color.rgb, metalness, f0, f90);
-        surface.film.weight *= 1.0 - metalness; // a pane's lobe has none
+        // A pane's lobe has no film, and what is diffused has it at its interface alone
+        surface.film.weight *= 1.0 - metalness;
+#ifdef FILM_BINDING
+        if (AREALIGHT_HAS_THIN_FILM) {
+            float cos_view = arealight_surface_frame(surface.normal, surface.view).cos_view;
+            arealight_put_film_on_interface(surface, surface.film, cos_view);
+            surface.film = AREALIGHT_NO_FILM;
+        }
+#endif
     } else {
         arealight_surface_from_metalness(surface, base_color.rgb, metalness, f0, f90);
     }

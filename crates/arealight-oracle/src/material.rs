@@ -137,10 +137,14 @@ impl Surface {
     #[must_use]
     pub fn without_film(self, cos_view: f64) -> Self {
         let Some(film) = &self.film else { return self };
-        let schlick = |f0, f90| film.as_schlick(f0, f90, cos_view, self.alpha.sqrt());
-        let (f0, f90) = schlick(self.f0, self.f90);
+        let at_facets = |f0, f90| film.as_schlick(f0, f90, cos_view, self.alpha.sqrt());
+        let (f0, f90) = at_facets(self.f0, self.f90);
         let interface = self.interface.map(|interface| {
-            let (f0, f90) = schlick(DVec3::splat(interface.f0), interface.f90);
+            let (f0, f90) = if interface.by_albedo {
+                at_facets(DVec3::splat(interface.f0), interface.f90)
+            } else {
+                film.above_lambert(interface.f0, interface.f90, cos_view)
+            };
             Interface { f0: f0.max_element(), f90, ..interface }
         });
         Self { f0, f90, interface, film: None, ..self }

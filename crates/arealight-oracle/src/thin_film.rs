@@ -76,7 +76,17 @@ impl ThinFilm {
     /// float64 twin of `arealight_thin_film_schlick`. `cos_view` is the cosine between the surface's normal
     /// and the direction to the viewer, `roughness` perceptual.
     pub fn as_schlick(&self, f0: DVec3, f90: f64, cos_view: f64, roughness: f64) -> (DVec3, f64) {
-        let cosines = facet_cosines(cos_view, roughness);
+        self.as_schlick_at(facet_cosines(cos_view, roughness), f0, f90)
+    }
+
+    /// The same above a Lambert lobe, on whose way are the facets between the view and each direction.
+    pub fn above_lambert(&self, f0: f64, f90: f64, cos_view: f64) -> (DVec3, f64) {
+        let deviation = (0.375 - 7.0 / 24.0 * cos_view * cos_view).sqrt();
+        let cosine = |step: f64| (0.5 + 0.5 * (cos_view / 1.5 + step * deviation)).sqrt();
+        self.as_schlick_at([-1.0, 0.0, 1.0].map(cosine), DVec3::splat(f0), f90)
+    }
+
+    fn as_schlick_at(&self, cosines: [f64; 3], f0: DVec3, f90: f64) -> (DVec3, f64) {
         let mean = cosines.iter().map(|cosine| self.fresnel(f0, *cosine)).sum::<DVec3>() / 3.0;
         let weight = cosines.iter().map(|cosine| (1.0 - cosine).powi(5)).sum::<f64>() / 3.0;
         let grazing = (mean.min_element() / weight.max(1e-6)).clamp(0.0, 1.0);

@@ -14,11 +14,12 @@ use crate::resource::Resource;
 use crate::shade::{Bound, ShadePass, ShadePassInfo, ShadeResources};
 use crate::shadows::{ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo};
 use crate::table_image::{TableFormat, TableImage};
+use crate::view::{check_whole, view_of};
 use arealight::plan::{MediumOptions, Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
 use arealight::{Blockers, Light, LightTable, PackedLights, PyramidSize};
 use ash::vk;
 use bytemuck::cast_slice;
-use glam::{DVec3, Mat4, Vec3};
+use glam::{DVec3, Vec3};
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocator;
 use history::History;
@@ -39,7 +40,7 @@ pub struct AreaLightsInfo {
     /// Of how many frames' rays a mean is made before, until [`AreaLights::forget_shadows`]; each frame has
     /// its [`ShadeFrame::position_from_clip`].
     pub shadow_history: ShadowHistory,
-    /// A medium before the picture, of perspective cameras. Rays need [`ShadeOptions::shadow_rays`]. Depth,
+    /// A medium before the picture: one image, whole, of a perspective camera, with one sample a pixel. Rays need [`ShadeOptions::shadow_rays`]. Depth,
     /// format and quality are taken from [`AreaLightsInfo::options`], and size, camera, matrix, lights and
     /// seed from each frame.
     pub medium: Option<(MediumOptions, MediumFrame)>,
@@ -153,6 +154,11 @@ impl AreaLights {
         if (has_rays || info.shadow_history != ShadowHistory::Off) && info.options.shadow_rays == 0 {
             let message = "is 0, but the medium has rays, or shadows a history: 1 will do".into();
             return Err(Error::InvalidArgument { field: "shadow_rays", message });
+        }
+        if info.medium.is_some() {
+            let ShadeOptions { orthographic, separate_lobes, .. } = info.options;
+            let others = [(orthographic, "orthographic"), (separate_lobes, "separate_lobes")];
+            check_whole(info.options, &others, "a medium is before one image of a perspective camera,")?;
         }
         let allocator = SharedAllocator(allocator);
         // SAFETY: the same contract, throughout.
@@ -271,7 +277,7 @@ impl AreaLights {
     }
 
     /// Records that images are loaded into layers of the light textures, for the frame at `place`, before
-    /// [`AreaLights::shade`] and once at most. Each update comes with its image, a
+    /// [`AreaLights::shade`]. Each update comes with its image, a
     /// [`Resource::SampledImage`]; [`TextureUpdate::source_set`] does not count.
     ///
     /// # Safety
@@ -324,7 +330,7 @@ impl AreaLights {
         // SAFETY: the same contract.
         let recorded = unsafe { self.record(command_buffer, place, (lights, origin), view, g_buffer) };
         if let Some(textures) = &mut self.textures {
-            textures.settle(recorded.is_ok());
+            textures.settle(place, recorded.is_ok());
         }
         recorded?;
         (self.new_table, self.new_blockers) = (None, None);
@@ -395,7 +401,12 @@ impl AreaLights {
             _ => None,
         };
         let medium = self.medium.as_ref().map(|(medium, given)| {
-            let position_from_clip = view.position_from_clip.unwrap_or(Mat4::NAN); // which is refused
+            if view.position_from_clip.is_none() || view.rows.is_some() {
+                let field = if view.rows.is_some() { "rows" } else { "position_from_clip" };
+                let message = "is not that of a whole picture before which a medium is".into();
+                return Err(Error::InvalidArgument { field, message });
+            }
+            let position_from_clip = view_of(self.options, view)?.position_from_clip;
             let (size, camera, lights, seed) = (view.size, view.camera, frame.lights, self.seed);
             let frame = MediumFrame { size, camera, position_from_clip, lights, seed, ..*given };
             let set = place.sets[place.sets.len() - 1];

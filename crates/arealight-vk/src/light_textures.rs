@@ -21,7 +21,7 @@ use std::ops::Range;
 const LAYOUT: vk::ImageLayout = vk::ImageLayout::GENERAL;
 
 /// What becomes of a layer.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TextureUpdate {
     /// The layer that is replaced.
     pub layer: u32,

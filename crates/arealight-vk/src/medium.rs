@@ -45,7 +45,7 @@ pub struct MediumResources {
 }
 
 /// What differs from frame to frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MediumFrame {
     /// Froxels across, down and away from the camera: at most 65535 each. 160 x 90 x 64 is usual.
     pub froxels: [u32; 3],
@@ -53,7 +53,7 @@ pub struct MediumFrame {
     pub size: [u32; 2],
     /// The position of a perspective camera, relative to the origin that lights are packed with.
     pub camera: Vec3,
-    /// The inverse of (projection x view), from clip space to positions relative to the origin.
+    /// The inverse of (projection x view), from clip space, y down, to positions relative to the origin.
     pub position_from_clip: Mat4,
     /// Of the lights in the set's buffers.
     pub lights: LightSummary,

@@ -110,18 +110,22 @@ pub(crate) fn check_view(options: ShadeOptions) -> Result<(), Error> {
     if options.shadow_rays == 0 {
         return Ok(());
     }
-    for (is_set, field) in [
+    check_whole(options, &[(options.stencil, "stencil")], "shadow rays are of whole frames")
+}
+
+/// Refuses options of pictures that are not whole, with one sample a pixel, or that have any of `others`.
+pub(crate) fn check_whole(
+    options: ShadeOptions,
+    others: &[(bool, &'static str)],
+    why: &str,
+) -> Result<(), Error> {
+    let these = [
         (options.rectangle, "rectangle"),
         (options.texels_per_pixel != 1, "texels_per_pixel"),
         (options.samples != 1, "samples"),
-        (options.stencil, "stencil"),
-    ] {
-        if is_set {
-            return wrong(
-                field,
-                "is set, but shadow rays are of whole frames with one sample a pixel".into(),
-            );
-        }
-    }
-    Ok(())
+    ];
+    these.iter().chain(others).find(|(is_set, _)| *is_set).map_or(Ok(()), |(_, field)| {
+        let message = format!("is set, but {why} with one sample a pixel");
+        Err(Error::InvalidArgument { field, message })
+    })
 }

@@ -241,7 +241,7 @@ impl PackedLights {
             profile.scale() as f32,
             profile.levels().len() as f32,
             profile.piece_scale() as f32,
-            if profile.harmonics().is_empty() { 0.0 } else { 1.0 },
+            (if profile.harmonics().is_empty() { 1.0 } else { -1.0 }) * profile.crowding() as f32,
         ]);
         self.vertices.extend(profile.levels().iter().map(|cosine| {
             let tangents = (1.0 - cosine * cosine) / (cosine * cosine);

@@ -234,7 +234,7 @@ pub enum ShadowHistory {
 /// and two of each of its `rays`; 0 without rays.
 pub fn shadow_picks_size(rays: u32, size: [u32; 2]) -> u64 {
     let words = if rays == 0 { 0 } else { 1 + 2 * u64::from(rays) };
-    4 * words * size.map(u64::from).iter().product::<u64>()
+    size.map(u64::from).iter().product::<u64>().saturating_mul(4 * words)
 }
 
 /// Words at the beginning of the buffer that keeps shadows from frame to frame: for frames of even and of odd
@@ -247,7 +247,7 @@ pub const SHADOW_HISTORY_PIXEL: usize = 10;
 /// before the first frame.
 pub fn shadow_history_size(size: [u32; 2]) -> u64 {
     let pixels: u64 = size.map(u64::from).iter().product();
-    4 * (SHADOW_HISTORY_HEAD as u64 + 2 * SHADOW_HISTORY_PIXEL as u64 * pixels)
+    pixels.saturating_mul(8 * SHADOW_HISTORY_PIXEL as u64).saturating_add(4 * SHADOW_HISTORY_HEAD as u64)
 }
 
 /// The values of the constants of the kernel [`kernels::SHADOW_HISTORY`].

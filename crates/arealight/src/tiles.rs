@@ -96,17 +96,26 @@ pub const NO_TILES: [u32; CLASS_WORDS] = [0, 0, 1, 0];
 pub const FIRST_LIST: u32 = (TileClass::ALL.len() * CLASS_WORDS) as u32;
 
 /// Bytes of the buffer of tile lists, for an image of `size` pixels and lists of `capacity` lights: the
-/// classes' dispatches ([`CLASS_WORDS`]), their lists of tiles, and a record a tile.
+/// classes' dispatches ([`CLASS_WORDS`]), their lists of tiles, and a record a tile. The most that there is
+/// where it is more.
 pub fn memory(size: [u32; 2], capacity: u32) -> u64 {
     let [columns, rows] = tile_counts(size).map(u64::from);
     let record = u64::from(RECORD_HEADER) + u64::from(capacity);
-    (u64::from(FIRST_LIST) + columns * rows * (TileClass::ALL.len() as u64 + record)) * 4
+    let words = (columns * rows).saturating_mul(TileClass::ALL.len() as u64 + record);
+    words.saturating_add(u64::from(FIRST_LIST)).saturating_mul(4)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Effects;
+
+    #[test]
+    fn no_size_is_too_large_to_be_told() {
+        assert_eq!(memory([u32::MAX; 2], u32::MAX), u64::MAX);
+        assert_eq!(crate::plan::shadow_picks_size(4, [u32::MAX; 2]), u64::MAX);
+        assert_eq!(crate::plan::shadow_history_size([u32::MAX; 2]), u64::MAX);
+    }
 
     #[test]
     fn the_cheapest_class_comes_first_and_numbers_are_places() {

@@ -90,19 +90,20 @@ vec3 arealight_facet_cosines(float cos_view, float roughness) {
     return clamp(vec3(mean - deviation, mean, mean + deviation), 0.0, 1.0);
 }
 
-// Replaces reflectances at normal and at grazing incidence by those that stand for a film on the surface, at
-// a view: `cos_view` is the cosine between the shading normal and the direction to the viewer, in [0, 1];
-// `roughness` perceptual, in [0, 1].
-//
-// A facet's angle is not the view's: three angles count, so that what the film reflects of light from
-// everywhere has an error of 1.4e-3 on dielectrics and 4.7e-3 on metals (Schlick's term through the film at
-// the view's own angle: 7.9e-3 and 31e-3).
-void arealight_thin_film_schlick(ArealightThinFilm film, float cos_view, float roughness, inout vec3 f0,
-                                 inout float f90) {
+// The same of the facets that reflect what a Lambert lobe scatters from everywhere, which are those between
+// the view and each direction: the deviation is that of the cosine between these two.
+vec3 arealight_coupled_cosines(float cos_view) {
+    float mean = cos_view * (2.0 / 3.0);
+    float deviation = sqrt(0.375 - 0.2916667 * cos_view * cos_view);
+    return sqrt(0.5 + 0.5 * vec3(mean - deviation, mean, mean + deviation));
+}
+
+// Replaces reflectances at normal and at grazing incidence by those that stand for a film on the surface, on
+// facets at three cosines of incidence.
+void arealight_thin_film_schlick_at(ArealightThinFilm film, vec3 cosines, inout vec3 f0, inout float f90) {
     if (!arealight_is_film(film)) {
         return;
     }
-    vec3 cosines = arealight_facet_cosines(cos_view, roughness);
     vec3 mean = vec3(0.0);
     float weight = 0.0;
     for (int i = 0; i < 3; i++) {
@@ -115,14 +116,33 @@ void arealight_thin_film_schlick(ArealightThinFilm film, float cos_view, float r
     f90 = mix(f90, grazing, film.weight);
 }
 
+// Replaces reflectances at normal and at grazing incidence by those that stand for a film on the surface, at
+// a view: `cos_view` is the cosine between the shading normal and the direction to the viewer, in [0, 1];
+// `roughness` perceptual, in [0, 1].
+//
+// A facet's angle is not the view's: three angles count, so that what the film reflects of light from
+// everywhere has an error of 1.4e-3 on dielectrics and 4.7e-3 on metals (Schlick's term through the film at
+// the view's own angle: 7.9e-3 and 31e-3).
+void arealight_thin_film_schlick(ArealightThinFilm film, float cos_view, float roughness, inout vec3 f0,
+                                 inout float f90) {
+    arealight_thin_film_schlick_at(film, arealight_facet_cosines(cos_view, roughness), f0, f90);
+}
+
+// Does so for the interface above a surface's diffuse lobe, whose other members but the layers are set.
+void arealight_put_film_on_interface(inout ArealightSurface surface, ArealightThinFilm film, float cos_view) {
+    vec3 f0 = vec3(surface.interface_f0);
+    vec3 cosines = AREALIGHT_COUPLES_BY_ALBEDO ? arealight_facet_cosines(cos_view, surface.roughness)
+        : arealight_coupled_cosines(cos_view);
+    arealight_thin_film_schlick_at(film, cosines, f0, surface.interface_f90);
+    surface.interface_f0 = arealight_max_component(f0);
+}
+
 // Puts a film on a surface whose other members but the layers above are set: its specular lobe's
 // reflectances, and its interface's.
 void arealight_put_thin_film(inout ArealightSurface surface, ArealightThinFilm film) {
     float cos_view = arealight_surface_frame(surface.normal, surface.view).cos_view;
-    vec3 interface_f0 = vec3(surface.interface_f0);
     arealight_thin_film_schlick(film, cos_view, surface.roughness, surface.f0, surface.f90);
-    arealight_thin_film_schlick(film, cos_view, surface.roughness, interface_f0, surface.interface_f90);
-    surface.interface_f0 = max(interface_f0.r, max(interface_f0.g, interface_f0.b));
+    arealight_put_film_on_interface(surface, film, cos_view);
 }
 
 // The surface with reflectances that stand for its own film, at the cosine between its shading normal and the
@@ -131,10 +151,7 @@ void arealight_put_thin_film(inout ArealightSurface surface, ArealightThinFilm f
 ArealightSurface arealight_without_film(ArealightSurface surface, float cos_view) {
     arealight_thin_film_schlick(surface.film, cos_view, surface.roughness, surface.f0, surface.f90);
     if (AREALIGHT_COUPLES_DIFFUSE && surface.diffuse_albedo != vec3(0.0)) {
-        vec3 interface_f0 = vec3(surface.interface_f0);
-        arealight_thin_film_schlick(surface.film, cos_view, surface.roughness, interface_f0,
-                                    surface.interface_f90);
-        surface.interface_f0 = max(interface_f0.r, max(interface_f0.g, interface_f0.b));
+        arealight_put_film_on_interface(surface, surface.film, cos_view);
     }
     return surface;
 }

@@ -5,12 +5,15 @@ use arealight::{Blockers, TexturePart};
 use arealight_tests::floor::{SIZE, position};
 use arealight_tests::prelude::*;
 use arealight_vk::gpu_allocator::{AllocationSizes, AllocatorDebugSettings, vulkan};
-use arealight_vk::{AreaLights, AreaLightsInfo, MediumFrame, TextureUpdate};
+use arealight_vk::{AreaLights, AreaLightsInfo, MediumFrame, TextureUpdate, Viewport};
 use glam::{DAffine3, Mat4};
 use std::sync::Mutex;
 
-/// Does something with area lights on the engine's device, and sees that all memory was given back.
-fn with_area_lights(engine: &TestEngine, info: &AreaLightsInfo, act: impl FnOnce(&mut AreaLights)) {
+/// Area lights on the engine's device, and where their memory is from.
+fn make(
+    engine: &TestEngine,
+    info: &AreaLightsInfo,
+) -> Result<(AreaLights, Arc<Mutex<vulkan::Allocator>>), Error> {
     let host = engine.host();
     let allocator = vulkan::Allocator::new(&vulkan::AllocatorCreateDesc {
         instance: host.instance().clone(),
@@ -26,7 +29,14 @@ fn with_area_lights(engine: &TestEngine, info: &AreaLightsInfo, act: impl FnOnce
         let (instance, device) = (host.instance(), host.device());
         AreaLights::new(instance, host.physical_device(), device, Arc::clone(&allocator), info)
     };
-    act(&mut made.unwrap());
+    made.map(|made| (made, allocator))
+}
+
+/// Does something with area lights on the engine's device, and sees that all memory was given back.
+fn with_area_lights(engine: &TestEngine, info: &AreaLightsInfo, act: impl FnOnce(&mut AreaLights)) {
+    let (mut area_lights, allocator) = make(engine, info).unwrap();
+    act(&mut area_lights);
+    drop(area_lights);
     let left = allocator.lock().unwrap().generate_report().total_allocated_bytes;
     assert_eq!(left, 0, "bytes were not given back");
 }
@@ -202,18 +212,20 @@ fn media_dim_what_is_shaded_and_scatter_light_that_nothing_blocks() {
     let view = ShadeFrame { position_from_clip: Some(Mat4::IDENTITY), ..floor.frame() };
     let medium = MediumFrame {
         froxels: [4, 3, 64],
-        size: [0; 2],
-        camera: Vec3::ZERO,
-        position_from_clip: Mat4::ZERO,
-        lights: LightSummary::default(),
-        scattering: Vec3::ZERO,
         extinction: 0.2,
         anisotropy: 0.5,
         nearest: 1.0,
         farthest: 16.0,
-        cull_radiance: 0.0,
-        seed: 0,
+        ..MediumFrame::default()
     };
+    for (field, options) in [
+        ("samples", ShadeOptions { samples: 4, ..ShadeOptions::default() }),
+        ("orthographic", ShadeOptions { orthographic: true, ..ShadeOptions::default() }),
+    ] {
+        let medium = Some((MediumOptions::default(), medium));
+        let made = make(&engine, &AreaLightsInfo { options, medium, ..AreaLightsInfo::default() });
+        assert_eq!(self::field(&made.err().unwrap()), field);
+    }
     for shadow_rays in [0, 1] {
         let options = ShadeOptions { shadow_rays, ..ShadeOptions::default() };
         let rays = MediumOptions { shadow_rays: shadow_rays > 0, ..MediumOptions::default() };
@@ -227,6 +239,22 @@ fn media_dim_what_is_shaded_and_scatter_light_that_nothing_blocks() {
             *area_lights.medium_mut().unwrap() =
                 MediumFrame { scattering: Vec3::ONE, froxels: [5, 4, 32], ..medium };
             pictures.push(picture(area_lights, 0, (&floor, &lights), &view));
+            // y up in clip space
+            let [width, height] = SIZE.map(|side| side as f32);
+            let up = Viewport { y: height, width, height: -height, max_depth: 1.0, ..Viewport::default() };
+            let position_from_clip = Some(Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)));
+            let view = ShadeFrame { viewport: Some(up), position_from_clip, ..view };
+            let upright = picture(area_lights, 0, (&floor, &lights), &view);
+            assert!(shadow_rays > 0 || upright == pictures[2]);
+            // SAFETY: Nothing is recorded where an error is returned.
+            let mut refused = |view: &ShadeFrame| unsafe {
+                let commands = vk::CommandBuffer::null();
+                area_lights.shade(commands, 0, &lights, DVec3::ZERO, view, &floor.resources())
+            };
+            let (rows, position_from_clip) = (Some([0, 8]), None);
+            for view in [ShadeFrame { rows, ..view }, ShadeFrame { position_from_clip, ..view }] {
+                assert!(matches!(refused(&view), Err(Error::InvalidArgument { .. })));
+            }
         });
         for (pixel, clear) in pixels().zip(&pictures[0]) {
             let away = position(pixel).distance(view.camera);
@@ -270,8 +298,9 @@ fn images_on_lights_are_loaded_before_a_frame() {
         for place in [1, 0, 1] {
             let images = [(read(&red), update)];
             // SAFETY: The commands are waited for, and the image outlives them.
-            let load = |commands| unsafe { area_lights.load_textures(commands, place, &images) }.unwrap();
-            engine.host().submit(load).unwrap();
+            let mut load = |commands| unsafe { area_lights.load_textures(commands, place, &images) }.unwrap();
+            // As often as the host likes
+            engine.host().submit(|commands| (0..2).for_each(|_| load(commands))).unwrap();
             let lit = picture(area_lights, place, (&floor, &lights), &floor.frame());
             assert!(lit.iter().all(|texel| texel.y == 0.0 && texel.z == 0.0));
             assert!(lit.iter().filter(|texel| texel.x > 0.01).count() > lit.len() / 4);

@@ -120,6 +120,41 @@ fn points(seed: u64, surface: &Surface, count: usize) -> Vec<EvalPoint> {
     (0..count).map(one).collect()
 }
 
+#[test]
+fn narrow_beams_are_met_by_few_levels() {
+    let Some(engine) = TestEngine::new() else { return };
+    let power = |exponent: f64| {
+        (0..=90).map(|d| [f64::from(d), f64::from(d).to_radians().cos().max(0.0).powf(exponent)]).collect()
+    };
+    let beams: [Vec<[f64; 2]>; 5] = [
+        vec![[0.0, 1.0], [5.0, 1.0], [8.0, 0.0]],
+        vec![[0.0, 1.0], [5.0, 1.0], [8.0, 0.05], [90.0, 0.0]],
+        vec![[0.0, 1.0], [2.0, 1.0], [3.0, 0.01], [90.0, 0.0]],
+        power(16.0),
+        power(128.0),
+    ];
+    for (material, surface, bounds) in
+        [("diffuse", lambert_surface(), [0.06, 0.016]), ("ggx", glossy_surface(0.25), [0.12, 0.05])]
+    {
+        for (index, beam) in beams.iter().enumerate() {
+            let by = |levels| {
+                let mut points = points(7, &surface, 600);
+                let profile = Profile::new(beam, levels).unwrap();
+                points.iter_mut().for_each(|point| point.light.profile = Some(profile.clone()));
+                let answers = engine.eval(&points, Quality::default()).unwrap();
+                answers.iter().map(|answer| f64::from(answer.x)).collect::<Vec<f64>>()
+            };
+            let exact = by(Profile::MAX_LEVELS);
+            let [one, four, eight] = [1, 4, 8].map(|levels| error(&by(levels), &exact, &exact));
+            println!("{material}, beam {index}: {four:.4} {eight:.4}");
+            assert!(
+                four < bounds[0] && eight < bounds[1] && one > 3.0 * eight,
+                "{material} {index}: {one} {four} {eight}"
+            );
+        }
+    }
+}
+
 /// A street lamp's candela by degrees and azimuth, 24 of them: two lobes along the street, to one side of it.
 fn street() -> Vec<Vec<f64>> {
     let lobe = |angle: f64, azimuth: f64| {

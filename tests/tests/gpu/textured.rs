@@ -353,6 +353,31 @@ fn a_far_light_shows_its_mean() {
     }
 }
 
+#[test]
+fn a_light_that_shows_nearly_all_of_a_layer_shows_it_as_one_that_shows_all() {
+    let Some(mut engine) = TestEngine::new() else { return };
+    pictures::load(&mut engine, &[bars([256, 256])], |_| TexturePart::default()).unwrap();
+    for distance in [0.5, 2.0, 30.0] {
+        let seen = |low: f64, size: f64| {
+            let corner = |u: f64, v: f64| DVec3::new(u - 0.5, v - 0.5, distance);
+            let uvs = [DVec2::ZERO, DVec2::Y, DVec2::ONE, DVec2::X];
+            let mut given =
+                point(lambert_surface(), DVec3::Z, uvs.map(|uv| corner(uv.x, uv.y)).to_vec(), false);
+            let uvs = uvs.map(|uv| low + size * uv).to_vec();
+            given.light.texture = Some(LightTexture { layer: 0, uvs });
+            engine.eval(&[given], Quality::default()).unwrap()[0]
+        };
+        let all = seen(0.0, 1.0);
+        // Half a texel, and two: what is left out is a few percent of the outermost bars
+        for (inset, bound) in [(1.0 / 512.0, 0.005), (2.0 / 256.0, 0.02)] {
+            let off = (seen(inset, 1.0 - 2.0 * inset) / all - 1.0).abs().max_element();
+            assert!(off < bound, "{inset} at {distance}: {off}");
+        }
+        // The twin: a half does matter
+        assert!((seen(0.0, 0.5) / all - 1.0).abs().max_element() > 0.1);
+    }
+}
+
 /// Coloured bars side by side, in an image of so many texels.
 fn bars([width, height]: [usize; 2]) -> Arc<Texture> {
     Arc::new(Texture::from_fn(width, height, |column, _| {

@@ -3,6 +3,7 @@
 
 use arealight_engine::EngineError;
 use arealight_oracle::material::Interface;
+use arealight_oracle::thin_film::ThinFilm;
 use arealight_tests::prelude::*;
 use half::f16;
 
@@ -142,6 +143,24 @@ fn compare_with_eval(engine: &TestEngine, name: &str, scene: &Scene) {
     // The twin: this side reflects something else
     let different = other_side.iter().zip(expected(1.0)).filter(|(a, b)| a.distance(*b) > 1e-2).count();
     assert!(different > thin.len() / 2, "{name}: {different} of {}", thin.len());
+}
+
+#[test]
+fn a_film_is_above_what_is_diffused_and_no_lobe_of_its_own() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut paper = scene("paper.glb");
+    let with = |scene: &Scene, surfaces| {
+        reflected(&engine, scene, |renderer, _| renderer.shade_as(pass(surfaces)).map(|_| ()))
+    };
+    let bare = mean(&with(&paper, THROUGH));
+    for material in paper.materials.iter_mut().filter(|material| material.material.transmission > 0.0) {
+        material.material.film = Some(ThinFilm { weight: 1.0, ior: 2.0, thickness: 120.0 });
+    }
+    // Whether something else in the scene is glass
+    let [alone, beside_glass] =
+        [THROUGH - Effects::GLOSSY, THROUGH].map(|surfaces| with(&paper, surfaces | Effects::THIN_FILM));
+    assert!(alone == beside_glass, "{} {}", mean(&alone), mean(&beside_glass));
+    assert!(mean(&alone) > 0.3 * bare && mean(&alone) < 0.9 * bare, "{} {bare}", mean(&alone));
 }
 
 #[test]

@@ -12,18 +12,18 @@ vec3 film_fresnel(ArealightThinFilm film, vec3 f0, float f90, vec3 view, vec3 ha
     return arealight_thin_film_reflectance(film, f0, f90, clamp(dot(view, half_vector), 0.0, 1.0));
 }
 
-// What facets reflect of light before it reaches a Lambert lobe below: by these reflectances, or, under a
-// film, by its `fresnel`.
-float above_lambert(vec2 reflectances, ArealightThinFilm film, vec3 fresnel, vec3 view, vec3 half_vector) {
+// What facets of these reflectances reflect of light before it reaches a Lambert lobe below; of a film the
+// largest channel.
+float above_lambert(vec2 reflectances, ArealightThinFilm film, vec3 view, vec3 half_vector) {
     if (arealight_is_film(film)) {
+        vec3 fresnel = film_fresnel(film, vec3(reflectances.x), reflectances.y, view, half_vector);
         return min(arealight_max_component(fresnel), 1.0);
     }
     return mix(reflectances.x, reflectances.y, arealight_schlick_weight(view, half_vector));
 }
 
-// What such facets reflect of light all around: by 16 x 16 visible normals, to 1e-3. `below_film`: f0 and f90
-// of all that a film covers.
-float reflected(vec3 view, vec2 alpha, vec2 reflectances, ArealightThinFilm film, vec4 below_film) {
+// What such facets reflect of light all around: by 16 x 16 visible normals, to 1e-3.
+float reflected(vec3 view, vec2 alpha, vec2 reflectances, ArealightThinFilm film) {
     const int SIDE = 16;
     float sum = 0.0;
     for (int i = 0; i < SIDE * SIDE; i++) {
@@ -31,8 +31,7 @@ float reflected(vec3 view, vec2 alpha, vec2 reflectances, ArealightThinFilm film
         float density = arealight_ggx_density(view, light, alpha);
         if (light.z > 0.0 && density > 0.0) {
             vec3 half_vector = arealight_normalize_or(view + light, vec3(0.0, 0.0, 1.0));
-            vec3 fresnel = film_fresnel(film, below_film.rgb, below_film.a, view, half_vector);
-            sum += above_lambert(reflectances, film, fresnel, view, half_vector)
+            sum += above_lambert(reflectances, film, view, half_vector)
                 * arealight_ggx_evaluate(view, light, alpha, vec3(1.0), 1.0).x / density;
         }
     }

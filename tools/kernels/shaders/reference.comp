@@ -119,7 +119,7 @@ CoatLobe load_coat_lobe(ArealightFrame frame, ArealightCoat coat, float base) {
     vec2 reflectances = vec2(share);
     if (COUPLED == COUPLED_BY_ALBEDO && coat.weight > 0.0) {
         reflectances = coat.weight * vec2(AREALIGHT_COAT_F0, 1.0);
-        share = reflected(own_view, vec2(alpha), reflectances, ArealightThinFilm(0.0, 1.0, 0.0), vec4(0.0));
+        share = reflected(own_view, vec2(alpha), reflectances, AREALIGHT_NO_FILM);
     }
     float rest = (1.0 - share) * base;
     float probability = share > 0.0 ? clamp(share / (share + rest), 0.25, rest > 0.0 ? 0.75 : 1.0) : 0.0;
@@ -193,8 +193,7 @@ Lobes load_lobes(ArealightSurface surface, vec3 ray_origins[2], vec4 through, ve
     vec3 view = vec3(frame.sin_view, 0.0, frame.cos_view);
     vec2 above_diffuse = vec2(surface.interface_f0, surface.interface_f90);
     float taken = COUPLED == COUPLED_BY_ALBEDO && diffuse + let_through > 0.0
-        ? min(reflected(to_axis(axis, view), alpha, above_diffuse, surface.film,
-                        vec4(surface.f0, surface.f90)), 1.0) : 0.0;
+        ? min(reflected(to_axis(axis, view), alpha, above_diffuse, surface.film), 1.0) : 0.0;
     return Lobes(surface.position, ray_origins, arealight_frame_matrix(frame), view,
                  surface.diffuse_albedo, above_diffuse, taken, surface.f0, surface.f90, axis, alpha,
                  probability, load_coat_lobe(frame, surface.coat, glossy + diffuse),
@@ -213,8 +212,7 @@ float arrives_below(Lobes lobes, float above) {
 vec3 evaluate_transmitted(Lobes lobes, vec3 light) {
     vec3 mirrored = vec3(light.xy, -light.z);
     vec3 half_vector = arealight_normalize_or(lobes.view + mirrored, vec3(0.0, 0.0, 1.0));
-    float above = mix(lobes.above_diffuse.x, lobes.above_diffuse.y,
-                      arealight_schlick_weight(lobes.view, half_vector));
+    float above = above_lambert(lobes.above_diffuse, lobes.film, lobes.view, half_vector);
     vec3 diffused = lobes.transmitted * (AREALIGHT_INVERSE_PI * max(mirrored.z, 0.0)
                                          * arrives_below(lobes, above));
     vec3 lobe = arealight_ggx_evaluate(to_axis(lobes, lobes.view), to_axis(lobes, mirrored), lobes.alpha,
@@ -232,7 +230,7 @@ vec3 evaluate(Lobes lobes, vec3 light) {
     vec3 f0 = lobes.f0;
     float f90 = lobes.f90;
     vec3 fresnel = film_fresnel(lobes.film, f0, f90, lobes.view, half_vector);
-    float above = above_lambert(lobes.above_diffuse, lobes.film, fresnel, lobes.view, half_vector);
+    float above = above_lambert(lobes.above_diffuse, lobes.film, lobes.view, half_vector);
     if (arealight_is_film(lobes.film)) {
         f0 = vec3(1.0);
         f90 = 1.0;

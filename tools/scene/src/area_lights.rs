@@ -6,8 +6,8 @@ use crate::extensions::AREA_LIGHTS;
 use crate::messages::Messages;
 use crate::node_lights;
 use crate::nodes::PlacedNode;
-use crate::openings;
-use arealight::{Light, LightShape, Profile};
+use crate::shaping::Said;
+use arealight::{Light, LightShape};
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -15,9 +15,6 @@ use serde_json::{Map, Value};
 /// Luminous efficacy of 555 nm light, lm/W: `EXT_lights_area` gives luminance in cd/m², and radiance is that
 /// divided by this. A light of 683 nits has a radiance of 1.
 pub const LUMENS_PER_WATT: f64 = 683.0;
-
-/// Levels of the profiles of a scene's lights.
-pub(crate) const LEVELS: u32 = 8;
 
 #[derive(Deserialize, Clone)]
 struct AreaLight {
@@ -80,43 +77,26 @@ pub(crate) fn lights(
     for (node, place, light) in said {
         let light: &AreaLight = &light;
         let name = node_lights::name(node, light.name.as_ref(), "area light", place);
-        let shape = match light.shape.as_str() {
-            "rect" => polygon(light, node),
-            "disk" => disk(light, node),
-            other => Err(format!("type '{other}' is not known")),
-        };
+        let shape = Said::of_light(&light.extras).and_then(|said| {
+            let shape = match light.shape.as_str() {
+                "rect" => polygon(light, node),
+                "disk" => disk(light, node, said.aspect.unwrap_or(1.0)),
+                other => Err(format!("type '{other}' is not known")),
+            };
+            Ok((shape?, said))
+        });
         let radiance = radiance(light);
         for field in light.others.keys() {
             let text = format!("{field} is no field of {AREA_LIGHTS}: left out");
             messages.warn(format!("light '{name}'"), text);
         }
-        let extras = &light.extras["arealight"];
-        let made = shape.and_then(|shape| {
-            let profile = profile(&light.extras["arealight"])?;
-            let light = Light { name: name.clone(), radiance, shape, profile, ..Light::default() };
-            openings::behind(light, extras, node)
-        });
-        match made {
+        let light = |shape| Light { name: name.clone(), radiance, shape, ..Light::default() };
+        match shape.and_then(|(shape, said)| said.shape(light(shape), node)) {
             Ok(behind) => lights.extend(behind),
             Err(problem) => messages.warn(format!("light '{name}'"), format!("{problem}: left out")),
         }
     }
     Ok(lights)
-}
-
-/// What `extras.arealight` says of a light's angles: `spread`, as Blender has it, in
-/// radians, or `profile`, rows of degrees and factors.
-pub(crate) fn profile(said: &Value) -> Result<Option<Profile>, String> {
-    let made = match (&said["spread"], &said["profile"]) {
-        (Value::Number(spread), _) => Profile::spread(spread.as_f64().unwrap_or(f64::NAN), LEVELS),
-        (_, Value::Null) => return Ok(None),
-        (_, pairs) => {
-            let rows: Vec<Vec<f64>> =
-                Deserialize::deserialize(pairs).map_err(|error| format!("profile: {error}"))?;
-            Profile::new(&rows, LEVELS)
-        }
-    };
-    made.map(Some).map_err(|fault| fault.to_string())
 }
 
 /// A node's scale as the extension has it, with unit vectors to the light's right, up and front:
@@ -167,10 +147,8 @@ fn polygon(light: &AreaLight, node: &PlacedNode) -> Result<LightShape, String> {
 }
 
 /// The light's disk in the world, an ellipse where the file says so, or why there is none.
-fn disk(light: &AreaLight, node: &PlacedNode) -> Result<LightShape, String> {
+fn disk(light: &AreaLight, node: &PlacedNode, aspect: f64) -> Result<LightShape, String> {
     let Placing { scale, right, front, .. } = Placing::new(node)?;
-    // The extension has no ellipses: a file of ours says the width over the height
-    let aspect = light.extras["arealight"]["aspect"].as_f64().unwrap_or(1.0);
     let [half_width, half_height] = [scale * light.size * aspect, scale * light.size].map(|s| s * 0.5);
     if ![half_width, half_height].iter().all(|half| *half > 0.0 && half.is_finite()) {
         return Err(format!("a disk of the diameters {} and {}", 2.0 * half_width, 2.0 * half_height));

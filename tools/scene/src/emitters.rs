@@ -5,14 +5,13 @@ use crate::materials::Materials;
 use crate::meshes::Instance;
 use crate::messages::Messages;
 use crate::nodes::PlacedNode;
-use crate::openings;
 use crate::outlines::{Coordinates, outlines};
 use crate::scene::{SceneLamp, SceneMaterial};
 use crate::shape_lights;
+use crate::shaping::Said;
 use crate::shown::{self, TexturedLight};
 use arealight::{Light, LightShape};
 use glam::Vec3;
-use serde_json::Value;
 use std::ops::Range;
 
 /// The error of clusters of a mesh's faces: pictures err by a tenth of that.
@@ -182,8 +181,9 @@ impl Emitters {
 
     /// Adds a light as it is seen; false where it cannot be shaded.
     fn push(&mut self, source: &Source, light: Light, messages: &mut Messages) -> bool {
-        let said = source.node.shape.as_ref().unwrap_or(&Value::Null);
-        match openings::behind(light, said, source.node) {
+        let said = source.node.shape.as_ref().filter(|said| Said::is_said(said));
+        let said = said.map_or(Ok(Said::default()), Said::new);
+        match said.and_then(|said| said.shape(light, source.node)) {
             Ok(lights) => self.lights.extend(lights),
             Err(problem) => {
                 messages.warn(source.place.as_str(), format!("{problem}: left out"));

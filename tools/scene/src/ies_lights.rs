@@ -1,13 +1,13 @@
 //! `EXT_lights_ies`: luminaires by their LM-63 files. A point there, here as large as the file says.
 
-use crate::area_lights::{LEVELS, LUMENS_PER_WATT, Placing};
+use crate::area_lights::{LUMENS_PER_WATT, Placing};
 use crate::document::Document;
 use crate::error::SceneError;
 use crate::extensions::IES_LIGHTS;
 use crate::messages::Messages;
 use crate::node_lights;
 use crate::nodes::PlacedNode;
-use crate::openings;
+use crate::shaping::{LEVELS, Said};
 use arealight::{IesProfile, Light, LightShape, Profile};
 use glam::Vec3;
 use serde::Deserialize;
@@ -70,11 +70,10 @@ pub(crate) fn lights(
             }
             unread.insert(read.map_err(|problem| format!("{field}: {problem}")));
         }
-        let made = files[&place]
-            .as_ref()
-            .map_err(Clone::clone)
-            .and_then(|file| make(file, node, size, &name, &light.extras["arealight"]));
-        match made {
+        let made = files[&place].as_ref().map_err(Clone::clone);
+        let made = made.and_then(|file| make(file, node, size, &name));
+        let shaped = made.and_then(|made| Said::of_light(&light.extras)?.shape(made, node));
+        match shaped {
             Ok(behind) => lights.extend(behind),
             Err(problem) => messages.warn(format!("light '{name}'"), format!("{problem}: left out")),
         }
@@ -107,14 +106,8 @@ fn warn_of_upward_light(file: &IesProfile, name: &str, messages: &mut Messages) 
     }
 }
 
-/// A luminaire's light, or of a grid its lights, or why there is none. It shines along -Z; azimuth 0 is +X.
-fn make(
-    of: &Luminaire,
-    node: &PlacedNode,
-    size: Option<f64>,
-    name: &str,
-    extras: &Value,
-) -> Result<Vec<Light>, String> {
+/// A luminaire's light, or why there is none. It shines along -Z; azimuth 0 is +X.
+fn make(of: &Luminaire, node: &PlacedNode, size: Option<f64>, name: &str) -> Result<Light, String> {
     let said = node.ies_light.as_ref().map(Instance::deserialize).transpose();
     let Instance { multiplier, color } = said.map_err(|error| error.to_string())?.unwrap_or_default();
     if !(0.0..1e30).contains(&multiplier) {
@@ -140,6 +133,5 @@ fn make(
     };
     let radiance = Vec3::from_array(color) * (multiplier * of.candela / (LUMENS_PER_WATT * area)) as f32;
     let profile = Some(of.profile.clone());
-    let made = Light { name: name.to_owned(), radiance, shape, profile, ..Light::default() };
-    openings::behind(made, extras, node)
+    Ok(Light { name: name.to_owned(), radiance, shape, profile, ..Light::default() })
 }

@@ -207,7 +207,8 @@ fn said(extras: &json::Extras) -> Option<Value> {
 /// number.
 fn take_bits(said: Option<&mut Value>, name: &str) -> Option<u8> {
     let value = said.and_then(|said| said.as_object_mut()?.remove(name));
-    value.map_or(Some(0), |value| u8::try_from(value.as_u64()?).ok())
+    let bits = |number: &f64| number.fract() == 0.0 && (0.0..=255.0).contains(number);
+    value.map_or(Some(0), |value| value.as_f64().filter(bits).map(|bits| bits as u8))
 }
 
 /// The nodes' cameras.

@@ -1,7 +1,7 @@
 //! `KHR_lights_punctual`: points, spots and suns, which have no area. Where a size is given they are small
 //! spheres and disks of the same intensity.
 
-use crate::area_lights::{self, LEVELS, LUMENS_PER_WATT};
+use crate::area_lights::LUMENS_PER_WATT;
 use crate::bounds::Bounds;
 use crate::document::Document;
 use crate::error::SceneError;
@@ -9,7 +9,7 @@ use crate::extensions::PUNCTUAL_LIGHTS;
 use crate::messages::Messages;
 use crate::node_lights;
 use crate::nodes::PlacedNode;
-use crate::openings;
+use crate::shaping::{LEVELS, Said};
 use arealight::{Light, LightShape, Profile};
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
@@ -77,15 +77,18 @@ pub(crate) fn lights(
         let light: &PunctualLight = &light;
         // A sun's size is its own
         let own = (light.kind == "directional").then_some(SUN_RADIUS);
-        let Some(radius) = light.extras["arealight"]["radius"].as_f64().or(size).or(own) else {
-            messages.warn(
-                PUNCTUAL_LIGHTS,
-                "points have no area: lights without a size are left out (--light-size gives them one)",
-            );
-            continue;
-        };
         let name = node_lights::name(node, light.name.as_ref(), "punctual light", place);
-        match make(light, node, radius, bounds, &name, messages) {
+        let made = Said::of_light(&light.extras).and_then(|said| {
+            let Some(radius) = said.radius.or(size).or(own) else {
+                messages.warn(
+                    PUNCTUAL_LIGHTS,
+                    "points have no area: lights without a size are left out (--light-size gives them one)",
+                );
+                return Ok(Vec::new());
+            };
+            said.shape(make(light, node, radius, bounds, &name, messages)?, node)
+        });
+        match made {
             Ok(behind) => lights.extend(behind),
             Err(problem) => messages.warn(format!("light '{name}'"), format!("{problem}: left out")),
         }
@@ -93,7 +96,7 @@ pub(crate) fn lights(
     Ok(lights)
 }
 
-/// The light of a radius, or of a grid its lights, or why there is none.
+/// The light of a radius, or why there is none.
 fn make(
     light: &PunctualLight,
     node: &PlacedNode,
@@ -101,7 +104,7 @@ fn make(
     bounds: Bounds,
     name: &str,
     messages: &mut Messages,
-) -> Result<Vec<Light>, String> {
+) -> Result<Light, String> {
     if radius <= 0.0 || !radius.is_finite() {
         return Err(format!("a radius of {radius} m"));
     }
@@ -133,18 +136,9 @@ fn make(
         other => return Err(format!("type '{other}' is not known")),
     };
     let radiance = Vec3::from_array(light.color) * (light.intensity / LUMENS_PER_WATT * brightness) as f32;
-    let profile = match light.kind.as_str() {
-        "spot" => match area_lights::profile(&light.extras["arealight"])? {
-            None => {
-                let cone = Profile::cone(light.spot.inner_cone_angle, light.spot.outer_cone_angle, LEVELS);
-                Some(cone.map_err(|fault| fault.to_string())?)
-            }
-            profile => profile,
-        },
-        _ => None,
-    };
-    let made = Light { name: name.to_owned(), radiance, shape, profile, ..Light::default() };
-    openings::behind(made, &light.extras["arealight"], node)
+    let cone = || Profile::cone(light.spot.inner_cone_angle, light.spot.outer_cone_angle, LEVELS);
+    let profile = (light.kind == "spot").then(cone).transpose().map_err(|fault| fault.to_string())?;
+    Ok(Light { name: name.to_owned(), radiance, shape, profile, ..Light::default() })
 }
 
 /// Where a node's light shines to: along -Z.

@@ -4,8 +4,8 @@ use crate::images::Textures;
 use crate::meshes::Instance;
 use crate::messages::Messages;
 use crate::nodes::PlacedNode;
-use crate::openings;
 use crate::scene::SceneMaterial;
+use crate::shaping::Said as Shaping;
 use crate::shown;
 use crate::uv_map::{UvMap, UvTolerance};
 use arealight::blockers::ROUND_MARGIN;
@@ -58,7 +58,7 @@ pub(crate) fn light(
     textures: &Textures,
     messages: &mut Messages,
 ) -> Option<(Light, ShownImage)> {
-    let said = node.shape.as_ref().filter(|said| !openings::is_said(said))?;
+    let said = node.shape.as_ref().filter(|said| !Shaping::is_said(said))?;
     let place = format!("light '{}' (node {})", instance.name, node.index);
     let texture = material.emission_texture;
     let shape = Said::deserialize(said).map_err(|error| error.to_string());

@@ -6,7 +6,6 @@
 //! and the Fresnel term are taken at the mean of these normals.
 
 use super::{faces_origin, fitted_sample};
-use crate::formula::MIN_COS_VIEW;
 use crate::frame::SurfaceFrame;
 use crate::ggx::AnisotropicGgx;
 use crate::material::Surface;
@@ -86,7 +85,8 @@ impl HalfVectors {
 
     fn new(to_axes: DMat3, alpha: DVec2, view: DVec3, (f0, f90): (DVec3, f64)) -> Self {
         // Along the surface the half vectors of light that passes straight on have no direction
-        let view = to_axes * view.with_z(view.z.max(MIN_COS_VIEW)).normalize_or(DVec3::Z);
+        let least = (1e-5 / alpha.min_element()).clamp(1e-3, 1e-2);
+        let view = to_axes * view.with_z(view.z.max(least)).normalize_or(DVec3::Z);
         Self { to_axes, alpha, view, f0, f90, film: None, gain: DVec3::ZERO, albedo: DVec3::ONE }
     }
 

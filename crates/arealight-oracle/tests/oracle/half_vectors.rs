@@ -143,6 +143,27 @@ fn light_from_everywhere_has_the_lobe_s_albedo() {
 }
 
 #[test]
+fn smooth_metal_shows_lights_to_views_along_it() {
+    let wall = [[-3.0, -3.0], [3.0, -3.0], [3.0, 3.0], [-3.0, 3.0]].map(|[x, z]| DVec3::new(x, 1.0, z));
+    let light = RelativeLight {
+        vertices: wall.to_vec(),
+        radiance: DVec3::ONE,
+        two_sided: true,
+        ..RelativeLight::default()
+    };
+    for (alpha, cosine) in [(1e-4, 0.0), (1e-4, 1e-3), (1e-3, 1e-3), (1e-3, 2e-3)] {
+        // The wall is mirrored, and passed by
+        for view in [DVec3::new(0.3, -1.0, 0.0), DVec3::new(0.3, 1.0, 0.0)] {
+            let view = view.normalize_or(DVec3::X).with_z(cosine);
+            let shown = Shown { surface: metal(alpha), view, light: light.clone() };
+            let (found, truth) = (shown.by(SpecularLobes::HalfVectors).x, shown.truth().x);
+            // Views up to .6 degrees over the surface count as one there; a tenth of it lost .1 to 1
+            assert!((found - truth).abs() < 0.01, "{alpha} {cosine}: {found} {truth}");
+        }
+    }
+}
+
+#[test]
 fn a_mirror_shows_a_lamp_as_far_as_it_is_there() {
     // The facets are the normal alone: all of what a lamp's image covers, and nothing beside it
     let view = view_at(0.6);

@@ -4,7 +4,7 @@
 use crate::common::{from_everywhere, square_points, view_at};
 use arealight::{LightTable, Quality, SpecularLobes};
 use arealight_oracle::cubature::Settings;
-use arealight_oracle::material::Surface;
+use arealight_oracle::material::{Interface, Surface};
 use arealight_oracle::shading::{RelativeLight, ltc_on, truth};
 use arealight_oracle::stream::Stream;
 use arealight_oracle::thin_film::ThinFilm;
@@ -119,6 +119,44 @@ fn fitted_lobes_have_the_reflectances_that_stand_for_a_film() {
         assert!(apart(SpecularLobes::One, case) < 1e-12 && apart(SpecularLobes::Two, case) < 1e-12);
     }
     assert!(cases.iter().filter(|case| apart(SpecularLobes::HalfVectors, case) > 1e-3).count() > 20);
+}
+
+#[test]
+fn a_diffuse_lobe_gets_what_a_film_leaves_at_every_view() {
+    let ceiling = [[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]].map(|[x, y]| DVec3::new(x, y, 1.0));
+    let light =
+        RelativeLight { vertices: ceiling.to_vec(), radiance: DVec3::ONE, ..RelativeLight::default() };
+    let light = RelativeLight { two_sided: true, ..light };
+    let settings = Settings { relative_tolerance: 1e-3, max_evaluations: 100_000 };
+    let (mut errors, mut twins) = (0.0, 0.0);
+    for index in 0..24 {
+        let film = ThinFilm {
+            weight: 1.0,
+            ior: 1.3 + 0.1 * f64::from(index % 5),
+            thickness: 150.0 + 90.0 * f64::from(index % 7),
+        };
+        let view = view_at(1.5 * f64::from(index) / 23.0);
+        let interface = Some(Interface { f0: 0.04, f90: 1.0, by_albedo: false });
+        let surface = Surface {
+            diffuse_albedo: DVec3::ONE,
+            f0: DVec3::splat(0.04),
+            f90: 1.0,
+            alpha: 0.04,
+            film: Some(film),
+            interface,
+            ..Surface::default()
+        };
+        let by = |surface| ltc_on(Quality::default(), &TABLE, &surface, DVec3::Z, view, &light);
+        let truth = truth(&surface, DVec3::Z, view, &light, &settings).radiance;
+        // The twin: what stands for it on the facets that show the view
+        let (f0, f90) = film.as_schlick(surface.f0, 1.0, view.z, 0.2);
+        let interface = Some(Interface { f0: f0.max_element(), f90, by_albedo: false });
+        let twin = Surface { interface, ..surface.without_film(view.z) };
+        errors += (by(surface) - truth).abs().max_element() / 24.0;
+        twins += (by(twin) - truth).abs().max_element() / 24.0;
+    }
+    println!("mean of the largest channels: {errors:.4}, as at the view's facets {twins:.4}");
+    assert!(errors < 0.006 && twins > 2.0 * errors, "{errors} {twins}");
 }
 
 #[test]

@@ -16,9 +16,16 @@ pub(super) struct Textures {
     context: Context,
     level_pool: vk::DescriptorPool,
     level_sets: Vec<vk::DescriptorSet>,
-    /// Of each place, the pool of the sets that its last update read images by.
-    source_pools: Vec<vk::DescriptorPool>,
+    /// Of each place, the pools of the sets that its frame's updates read images by.
+    source_pools: Vec<SourcePools>,
     cleared: Cleared,
+}
+
+#[derive(Default, Clone)]
+struct SourcePools {
+    pools: Vec<vk::DescriptorPool>,
+    /// The next update is of another frame.
+    is_done: bool,
 }
 
 /// Whether the layers were made black, which comes before all else.
@@ -50,7 +57,7 @@ impl Textures {
                 context: context.clone(),
                 level_pool: vk::DescriptorPool::null(),
                 level_sets: vec![],
-                source_pools: vec![vk::DescriptorPool::null(); frames],
+                source_pools: vec![SourcePools::default(); frames],
                 cleared: Cleared::Not,
             };
             let (sizes, layout) = (made.layers.level_pool_sizes(), made.layers.level_set_layout());
@@ -81,8 +88,11 @@ impl Textures {
         }
     }
 
-    /// A frame's commands are whole, or will be thrown away.
-    pub(super) fn settle(&mut self, is_whole: bool) {
+    /// The commands of the frame at a place are whole, or will be thrown away.
+    pub(super) fn settle(&mut self, place: usize, is_whole: bool) {
+        if let Some(sources) = self.source_pools.get_mut(place) {
+            sources.is_done = true;
+        }
         if self.cleared == Cleared::Recorded {
             self.cleared = if is_whole { Cleared::Done } else { Cleared::Not };
         }
@@ -96,16 +106,20 @@ impl Textures {
         place: usize,
         updates: &[(Resource, TextureUpdate)],
     ) -> Result<(), Error> {
-        let before = std::mem::take(place_of(&mut self.source_pools, place)?);
-        // SAFETY: the frame before at this place is done; a null pool is ignored.
-        unsafe { self.context.device.destroy_descriptor_pool(before, None) };
+        let sources = place_of(&mut self.source_pools, place)?;
+        if std::mem::take(&mut sources.is_done) {
+            for pool in sources.pools.drain(..) {
+                // SAFETY: the frame before at this place is done.
+                unsafe { self.context.device.destroy_descriptor_pool(pool, None) };
+            }
+        }
         if updates.is_empty() {
             return Ok(());
         }
         let layouts = vec![self.layers.source_set_layout(); updates.len()];
         let (pool, sets) =
             descriptor_sets(&self.context, &self.layers.source_pool_sizes(layouts.len() as u32), &layouts)?;
-        self.source_pools[place] = pool;
+        sources.pools.push(pool);
         // SAFETY: the same contract.
         unsafe {
             for (set, (source, _)) in sets.iter().zip(updates) {
@@ -119,7 +133,7 @@ impl Textures {
             self.clear_once(command_buffer);
             let recorded = self.layers.record_update(command_buffer, &self.level_sets, &updates);
             if recorded.is_err() {
-                self.settle(false);
+                self.settle(place, false);
             }
             recorded
         }
@@ -130,7 +144,8 @@ impl Drop for Textures {
     fn drop(&mut self) {
         // SAFETY: by the contract of Textures::new; null pools are ignored.
         unsafe {
-            for pool in self.source_pools.iter().chain([&self.level_pool]) {
+            let sources = self.source_pools.iter().flat_map(|sources| &sources.pools);
+            for pool in sources.chain([&self.level_pool]) {
                 self.context.device.destroy_descriptor_pool(*pool, None);
             }
         }

@@ -7,14 +7,15 @@
 // A profile: a factor of a light's radiance, in [0, 1], by the angle from its front. Angles are measured by
 // x = sine^2 * scale: 0 on the axis, 1 where the profile ends.
 
-// The host's bridge to the rows of profiles. The first one is (scale, count of levels, piece scale, 1 if it
-// is not round). Of each level follows (x, factor, sum, squared tangent), sum being the factor's integral
-// over x from 0; then of 64 pieces the beginning of each, as wide as each other in sqrt((1 - cosine) * piece
-// scale), (x, factor, sum, slope of the factor); then the end, (1, 0, sum, 0).
+// The host's bridge to the rows of profiles. The first one is (scale, count of levels, piece scale, crowding,
+// negative where it is not round). Of each level follows (x, factor, sum, squared tangent), sum being the
+// factor's integral over x from 0; then of 64 pieces the beginning of each, (x, factor, sum, slope of the
+// factor); then the end, (1, 0, sum, 0). With p = sqrt((1 - cosine) * piece scale) pieces are even in
+// p * crowding / (1 + (crowding - 1) * p): narrower on the axis, for narrow beams.
 //
-// Where it is not round there follow the direction of azimuth 0, and of 33 places, as far from each other as
-// pieces are, what the factor is in parts of its mean about the normal: 1 and six harmonics of the azimuth,
-// the cosine's and the sine's coefficients of two in a row.
+// Where it is not round there follow the direction of azimuth 0, and of 33 places, even in p, what the factor
+// is in parts of its mean about the normal: 1 and six harmonics of the azimuth, the cosine's and the sine's
+// coefficients of two in a row.
 vec4 arealight_bridge_profile(uint row);
 
 const uint AREALIGHT_PROFILE_PIECES = 64u;
@@ -28,6 +29,7 @@ vec3 arealight_profile_place(uint profile, float side, float height) {
     float square = max(side + height, AREALIGHT_LEAST_SQUARE);
     float x = head.x * side / square;
     float part = sqrt(min(head.z * side / (square + sqrt(square * height)), 1.0));
+    part *= abs(head.w) / (1.0 + (abs(head.w) - 1.0) * part);
     uint piece = x < 1.0 ? min(uint(part * float(AREALIGHT_PROFILE_PIECES)), AREALIGHT_PROFILE_PIECES - 1u)
         : AREALIGHT_PROFILE_PIECES;
     vec4 row = arealight_bridge_profile(profile + 1u + uint(head.y) + piece);
@@ -85,7 +87,7 @@ float arealight_profile_factor(uint profile, vec3 normal, vec3 offset) {
     float square = dot(side, side);
     float factor = arealight_profile_place(profile, square, height * height).y;
     vec4 head = arealight_bridge_profile(profile);
-    if (AREALIGHT_HAS_AZIMUTHS && head.w > 0.0) {
+    if (AREALIGHT_HAS_AZIMUTHS && head.w < 0.0) {
         float whole = square + height * height;
         float part = sqrt(head.z * square / max(whole + sqrt(whole) * abs(height), AREALIGHT_LEAST_SQUARE));
         factor *= arealight_profile_azimuth(arealight_azimuth_row(profile, head.y), mat3(1.0), normal, -side,

@@ -128,7 +128,7 @@ bool arealight_to_local(ArealightPoint point, ArealightShapedLight light, out Ar
     vec4 head = arealight_bridge_profile(light.profile);
     local.scale = head.x;
     local.piece_scale = head.z;
-    local.azimuth = head.w > 0.0 ? arealight_azimuth_row(light.profile, head.y) : 0u;
+    local.azimuth = head.w < 0.0 ? arealight_azimuth_row(light.profile, head.y) : 0u;
     local.levels = light.profile + 1u;
     local.levels_end = local.levels + uint(head.y);
     local.low = arealight_profile_place(light.profile, local.nearest, local.height);

@@ -27,11 +27,12 @@ struct ArealightHalfVectors {
     vec3 scale; // of what layers above let through, or more; else it is in the reflectances
 };
 
-// The direction to the viewer in a frame, for facets: a view that grazes more than
-// AREALIGHT_FORMULA_MIN_COS_VIEW counts as that. Of one along the surface half vectors of light that passes
-// straight on have no direction.
-vec3 arealight_facet_view(ArealightFrame frame) {
-    return arealight_unit(vec3(frame.sin_view, 0.0, max(frame.cos_view, AREALIGHT_FORMULA_MIN_COS_VIEW)));
+// The direction to the viewer in a frame, for facets of this alpha, the lesser of two. Of a view along the
+// surface half vectors of light that passes straight on have no direction: with less than this for the least
+// cosine smooth surfaces lose .3 of a light on average, and with more rough ones .01.
+vec3 arealight_facet_view(ArealightFrame frame, float alpha) {
+    float least = clamp(1e-5 / alpha, 1e-3, 1e-2);
+    return arealight_unit(vec3(frame.sin_view, 0.0, max(frame.cos_view, least)));
 }
 
 // The middle of the visible normals where alpha is 1, unit: the stretched view.
@@ -92,13 +93,15 @@ ArealightHalfVectors arealight_half_vectors(ArealightFacets facets, vec3 f0, vec
 ArealightHalfVectors arealight_specular_half_vectors(ArealightFrame frame, ArealightSurface surface,
                                                      ArealightSurface without_film,
                                                      ArealightTableSample table) {
-    ArealightFacets facets = ArealightFacets(mat3(1.0), vec2(table.alpha), arealight_facet_view(frame));
+    ArealightFacets facets = ArealightFacets(mat3(1.0), vec2(table.alpha),
+                                             arealight_facet_view(frame, table.alpha));
     if (AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness) {
         vec2 roughness = arealight_axis_roughness(surface);
         vec2 axis = arealight_surface_axis(frame, surface.anisotropy.tangent);
         facets.alpha = roughness * roughness;
         facets.to_axes = mat3(axis.x, -axis.y, 0.0, axis.y, axis.x, 0.0, 0.0, 0.0, 1.0);
-        facets.view = facets.to_axes * facets.view;
+        facets.view = facets.to_axes
+            * arealight_facet_view(frame, min(facets.alpha.x, facets.alpha.y));
     }
     vec3 albedo = arealight_specular_albedo(table, without_film.f0, without_film.f90);
     ArealightThinFilm film = AREALIGHT_NO_FILM;
@@ -117,7 +120,8 @@ ArealightHalfVectors arealight_coat_half_vectors(ArealightFrame frame, Arealight
     if (AREALIGHT_COATS_BY_ALBEDO) {
         reflectance = coat.weight * vec2(AREALIGHT_COAT_F0, 1.0);
     }
-    ArealightFacets facets = ArealightFacets(mat3(1.0), vec2(table.alpha), arealight_facet_view(own));
+    ArealightFacets facets = ArealightFacets(mat3(1.0), vec2(table.alpha),
+                                             arealight_facet_view(own, table.alpha));
     if (AREALIGHT_HAS_COAT_NORMAL) {
         facets.to_axes = arealight_frame_matrix(own);
     }

@@ -150,12 +150,13 @@ vec3 arealight_footprint(ArealightLobeImage image, vec3 vector) {
     float side = float(arealight_bridge_light_texture_side());
     ArealightImagePlace place = arealight_image_place(image, vector);
     vec2 inside = arealight_clamp_coordinate(place.coordinate, image.low, image.low + image.size);
-    float area = image.size.x * image.size.y;
-    if (area < 0.999) {
-        // Of a light that shows a piece of the layer the rest is not seen, from afar either
-        place.coordinate = inside;
-        place.height = min(place.height, 0.35 * sqrt(area));
-    }
+    // Of a light that shows a piece of the layer the rest is not seen, from afar either; the less there is of
+    // the rest, the less it matters
+    float area = min(image.size.x * image.size.y, 1.0);
+    float margin = area * area * area * area / max(1.0 - area, 1e-6);
+    place.coordinate = arealight_clamp_coordinate(place.coordinate, image.low - 0.25 * margin,
+                                                  image.low + image.size + 0.25 * margin);
+    place.height = min(place.height, 0.35 * sqrt(area) * (1.0 + margin));
     float height = place.height * side;
     if (AREALIGHT_FOOTPRINT == AREALIGHT_FOOTPRINT_MIPS) {
         // The variance h^2 / 2 of eq. 35, by mips, whose texels have a twelfth

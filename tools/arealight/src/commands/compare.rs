@@ -141,8 +141,11 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         )
     };
     print(&text)?;
-    let is_far = tolerance.is_some_and(|most| error.is_nan() || error > most);
-    Ok(if is_far { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+    let most = tolerance.filter(|most| error.is_nan() || error > *most);
+    Ok(most.map_or(ExitCode::SUCCESS, |most| {
+        output::say(&format!("error: RMSE over mean {error:e} is above --tolerance {most:e}"));
+        ExitCode::FAILURE
+    }))
 }
 
 /// The differences of the channels' means, `full` being the strongest colour's.

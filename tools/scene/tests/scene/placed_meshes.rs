@@ -3,6 +3,7 @@
 use crate::shapes::panel;
 use crate::writer::{Writer, png};
 use crate::{emitter_with, error, load, warnings};
+use arealight::Profile;
 use arealight_scene::Scene;
 use glam::{DVec3, Vec3};
 use serde_json::json;
@@ -136,15 +137,17 @@ fn each_instance_of_a_mesh_is_there_and_shines() {
 }
 
 #[test]
-fn doors_of_a_mesh_are_as_long_as_the_node_is_along_its_front() {
+fn a_mesh_may_have_a_profile_and_doors_as_long_as_the_node_is_along_its_front() {
     // A panel that faces +Y
     let mut shape = panel(2.0, 1.0);
     for vector in shape.positions.iter_mut().chain(&mut shape.normals) {
         vector.rotate_left(1);
     }
     for (scale, length) in [([1, 2, 1], 0.6), ([1, 1, 2], 0.3)] {
-        let said = json!({ "arealight": { "doors": { "length": 0.3, "angle": 0.0 } } });
-        let scene = load(emitter_with(&shape, json!({ "scale": scale, "extras": said })));
+        let said = json!({ "doors": { "length": 0.3, "angle": 0.0 }, "spread": 1.0 });
+        let node = json!({ "scale": scale, "extras": { "arealight": said } });
+        let scene = load(emitter_with(&shape, node));
+        assert_eq!(scene.lights[0].profile, Profile::spread(1.0, 8).ok());
         let over = scene.lights[0].opening.unwrap().center - scene.lights[0].shape.center();
         assert!((over - DVec3::Y * length).length() < 1e-6, "{over}");
     }

@@ -27,7 +27,7 @@ pub struct Arguments {
     #[arg(long, value_name = "R", default_value_t = Options::default().roughness,
         value_parser = parse_roughness)]
     roughness: f32,
-    /// Runs of each frame; the fastest counts.
+    /// Runs of each frame, at least two; the fastest counts.
     #[arg(long, value_name = "N", default_value_t = Options::default().rounds,
         value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
