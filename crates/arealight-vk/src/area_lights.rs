@@ -40,9 +40,9 @@ pub struct AreaLightsInfo {
     /// Of how many frames' rays a mean is made before, until [`AreaLights::forget_shadows`]; each frame has
     /// its [`ShadeFrame::position_from_clip`].
     pub shadow_history: ShadowHistory,
-    /// A medium before the picture: one image, whole, of a perspective camera, with one sample a pixel. Rays need [`ShadeOptions::shadow_rays`]. Depth,
-    /// format and quality are taken from [`AreaLightsInfo::options`], and size, camera, matrix, lights and
-    /// seed from each frame.
+    /// A medium before the picture: one image, whole, of a perspective camera, with one sample a pixel. Rays
+    /// need [`ShadeOptions::shadow_rays`]. Depth, format and quality are taken from
+    /// [`AreaLightsInfo::options`], and size, camera, matrix, lights and seed from each frame.
     pub medium: Option<(MediumOptions, MediumFrame)>,
     /// How many frames the host may have recorded that are not done yet.
     pub frames_in_flight: usize,
