@@ -140,7 +140,9 @@ fn narrow_beams_are_met_by_few_levels() {
             let by = |levels| {
                 let mut points = points(7, &surface, 600);
                 let profile = Profile::new(beam, levels).unwrap();
-                points.iter_mut().for_each(|point| point.light.profile = Some(profile.clone()));
+                for point in &mut points {
+                    point.light.profile = Some(profile.clone());
+                }
                 let answers = engine.eval(&points, Quality::default()).unwrap();
                 answers.iter().map(|answer| f64::from(answer.x)).collect::<Vec<f64>>()
             };
