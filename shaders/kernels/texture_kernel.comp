@@ -44,7 +44,7 @@ vec2 node_place(vec2 coordinate) {
 // and sixteen bits are enough. `outside` is how far the place is outside of the light.
 float scale_at(float outside, float height) {
     float distance = sqrt(outside * outside + height * height);
-    return 1.0 + PI * distance * distance * (distance / height);
+    return (distance + outside + PI * distance * distance * distance) / height;
 }
 
 // A coarser level between its nodes, as it is stored.
@@ -120,12 +120,12 @@ void main() {
         a[i] = b_u[i] = b_v[i] = vec4(0.0);
     }
     // Sum over the mip with three texels in two heights, or more. Along the shorter side, where texels are
-    // closer, so many at once as are as long as one along the longer side
+    // closer, so many at once as are as long as one along the longer side, or a 32nd of the light
     bool is_whole = nodes <= WHOLE;
     bool is_far = nodes == 1; // the last level is for all that is farther away, too
     int mip = is_whole ? max(findMSB(finest / WHOLE), 0) : constants.level + 2;
     int side = textureSize(all_levels, mip).x;
-    ivec2 step = is_whole ? ivec2(1) : min(ivec2(longer / stretch), side);
+    ivec2 step = is_whole ? ivec2(1) : clamp(ivec2(longer / stretch), 1, max(side / WHOLE, 1));
     vec2 reach = is_whole ? vec2(1e9) : 3.0 * height / stretch;
     ivec2 first = ivec2(max(floor((places[0] - reach) * float(side)), 0.0)) / step * step;
     ivec2 end = ivec2(min(ceil((places[BLOCK - 1] + reach) * float(side)), float(side)));
