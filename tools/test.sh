@@ -65,10 +65,9 @@ run_tests() {
 }
 
 # Runs the GPU tests again with the shaders instrumented: an access out of bounds is found. (The tests above run
-# under core and synchronisation validation, which cannot be had together with this.) The batteries, tests of
-# numbers, are left out, what stands beside Monte Carlo, and hosts in C: other tests make the same kernels read
-# and write the same buffers. Pushed descriptors are left out since the layer binds a set of its own, after which
-# this version of it (1.3.239) has lost what was pushed.
+# under core and synchronisation validation, which cannot be had together with this.) Left out are tests of numbers,
+# what stands beside Monte Carlo and hosts in C, whose kernels others run, and pushed descriptors: this version of
+# the layer (1.3.239) binds a set of its own, after which it has lost what was pushed.
 batteries='arcs|bits|c_api|c_lights|c_pictures|c_shadows|cpp_host|effects|footprints|furnace|guard|half_vectors|huge_lights|lobe_horizons'
 batteries+='|masked_shadows|material_frames|meshes|paths|polygon_sampling|properties|prune|quad_path|reach|rescattered|self_test'
 batteries+='|shading|shadow_levels|shadow_motion|shadowed_reference|shape_frames|shape_lights|shape_points'
@@ -97,9 +96,8 @@ check_gpu_tests() {
     [[ "${AREALIGHT_REQUIRE_GPU:-}" != 1 || "$ran" -ge "$gpu_test_floor" ]]
 }
 
-# Runs some of the GPU tests on a second driver, with the same bounds, and what it takes to compile pipelines: what passes on one driver alone is
-# tuned to it. Of the whole workspace, so that what was built before is what runs. Left out of
-# these modules are three tests that ask for more than Vulkan promises: denormal numbers, and sin and cos to the last place.
+# Runs some of the GPU tests on a second driver, with the same bounds, and what it takes to compile pipelines. Left
+# out of these modules are three tests that ask for more than Vulkan promises: denormals, sin and cos to the last place.
 second_driver_floor=27
 run_second_driver() {
     local manifest ran
