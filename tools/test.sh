@@ -36,8 +36,7 @@ export AREALIGHT_GPU_TEST_LOG="$scratch/gpu-tests"
 # Everything is built once: with the windows, too
 workspace=(--workspace --features "arealight-examples/window" --locked)
 
-summary=()
-failed=0
+summary=() failed=0
 step() { # name, command and its arguments
     local name="$1" began=$SECONDS state=ok
     shift
@@ -69,15 +68,14 @@ run_tests() {
 # what stands beside Monte Carlo and hosts in C, whose kernels others run, and pushed descriptors: this version of
 # the layer (1.3.239) binds a set of its own, after which it has lost what was pushed.
 batteries='arcs|bits|c_api|c_lights|c_pictures|c_shadows|cpp_host|effects|footprints|furnace|guard|half_vectors|huge_lights|lobe_horizons'
-batteries+='|masked_shadows|material_frames|meshes|paths|polygon_sampling|properties|prune|quad_path|reach|rescattered|self_test'
-batteries+='|shading|shadow_levels|shadow_motion|shadowed_reference|shape_frames|shape_lights|shape_points'
-batteries+='|shape_properties|shapes|slim_tubes|stability|surfaces|sweep|textured_disks|thin_film|tubes|shadow_scales'
-beside='monte_carlo|the_reference|half_of_every|culled|even_medium|frames_before|camera_finds|still_picture|nothing_is_darker'
+batteries+='|masked_shadows|material_frames|meshes|paths|polygon_sampling|properties|prune|quad_path|reach|rescattered|self_test|shading'
+batteries+='|shadow_levels|shadow_motion|shadowed_reference|shape_frames|shape_lights|shape_points|shape_properties|shapes|slim_tubes|stability'
+batteries+='|surfaces|sweep|textured_disks|thin_film|tubes|shadow_scales'
+names='monte_carlo|the_reference|half_of_every|culled|even_medium|frames_before|camera_finds|still_picture|nothing_is_darker|lists_and_hidden_froxels|openings_clip'
 run_assisted() {
-    local left_out="test(/$beside|^($batteries)::/) - test(/lists_and_hidden_froxels|openings_clip/)"
+    local left_out="test(/$names|^($batteries)::/)"
     [[ "${AREALIGHT_LONG:-}" != 1 ]] || left_out='test(the_guard_outlives_the_optimiser)' # a minute, and no device
     if cargo nextest --version >/dev/null 2>&1; then
-        # Of the whole workspace, so that what was built for the step before is what runs
         AREALIGHT_VALIDATION=gpu-assisted cargo nextest run "${workspace[@]}" \
             -E "(package(arealight-tests) or package(arealight-examples)) - binary(window) - $left_out - test(/pushe/)"
     else
@@ -96,8 +94,8 @@ check_gpu_tests() {
     [[ "${AREALIGHT_REQUIRE_GPU:-}" != 1 || "$ran" -ge "$gpu_test_floor" ]]
 }
 
-# Runs some of the GPU tests on a second driver, with the same bounds, and what it takes to compile pipelines. Left
-# out of these modules are three tests that ask for more than Vulkan promises: denormals, sin and cos to the last place.
+# Runs some of the GPU tests on a second driver, with the same bounds, and what it takes to compile pipelines: what passes on one driver alone is
+# tuned to it. Left out of these modules are three tests that ask for more than Vulkan promises: denormals, sin and cos to the last place.
 second_driver_floor=27
 run_second_driver() {
     local manifest ran
@@ -125,7 +123,7 @@ check_licences() {
 strict=()
 if grep -q '^12' /etc/debian_version 2>/dev/null; then strict=(--strict); fi
 
-# Built once, and not again for one package, whose dependencies would have other features
+# Built once, with the tests, and not again for one package: dependencies would have other features
 programs="$(realpath -m "${CARGO_TARGET_DIR:-target}")/debug"
 xtask="$programs/xtask"
 

@@ -40,8 +40,8 @@ vec2 node_place(vec2 coordinate) {
     return 0.5 + sign(coordinate - 0.5) * place;
 }
 
-// What stored sums are multiplied by, so that they are alike at all heights and places: mixing is fair then,
-// and sixteen bits are enough. `outside` is how far the place is outside of the light.
+// What stored sums are multiplied by, so that mixing is fair and sixteen bits are enough: h / D over the
+// light's share of K, about h^2 / (D (D + d) + pi D^4), `outside`, d, being how far the place is outside.
 float scale_at(float outside, float height) {
     float distance = sqrt(outside * outside + height * height);
     return (distance + outside + PI * distance * distance * distance) / height;
@@ -125,7 +125,7 @@ void main() {
     bool is_far = nodes == 1; // the last level is for all that is farther away, too
     int mip = is_whole ? max(findMSB(finest / WHOLE), 0) : constants.level + 2;
     int side = textureSize(all_levels, mip).x;
-    ivec2 step = is_whole ? ivec2(1) : clamp(ivec2(longer / stretch), 1, max(side / WHOLE, 1));
+    ivec2 step = clamp(ivec2(longer / stretch), 1, max(side / WHOLE, 1));
     vec2 reach = is_whole ? vec2(1e9) : 3.0 * height / stretch;
     ivec2 first = ivec2(max(floor((places[0] - reach) * float(side)), 0.0)) / step * step;
     ivec2 end = ivec2(min(ceil((places[BLOCK - 1] + reach) * float(side)), float(side)));
