@@ -368,7 +368,7 @@ typedef struct ArealightHost {
     void *physical_device;
     // VkDevice, with a queue that computes. No optional feature or extension is needed.
     void *device;
-    // VkPipelineCache that pipelines are made with, or 0. Not used elsewhere while a pass is being made.
+    // VkPipelineCache that pipelines are made with, or 0. It synchronises itself.
     uint64_t pipeline_cache;
 } ArealightHost;
 
@@ -750,7 +750,7 @@ typedef struct ArealightUpload {
 } ArealightUpload;
 
 // Arrays of the host for packed lights, as the buffers of ArealightResources hold them; aligned to 4 bytes,
-// null to ask for the sizes alone.
+// null to ask for the sizes alone. Sizes become what is needed: set them before each call.
 typedef struct ArealightPackedLights {
     // Where polygons and meshes go.
     void *lights;
@@ -824,7 +824,7 @@ typedef struct ArealightTileMemory {
 } ArealightTileMemory;
 
 // Arrays of the host for blockers, as the buffers of ArealightShadowResources hold them; aligned to 4 bytes,
-// null to ask for the sizes alone.
+// null to ask for the sizes alone. Sizes become what is needed: set them before each call.
 typedef struct ArealightBlockerArrays {
     // Where the hierarchy's nodes go.
     void *nodes;

@@ -104,7 +104,7 @@ pub unsafe extern "C" fn arealight_medium_pass_create(
         let shade = shade_options(arguments::read(options, "options")?)?;
         let medium = arguments::read(medium, "medium")?;
         let options = medium_options(shade, medium)?;
-        let (module, host_set) = host_module(&medium.module, true)?;
+        let (module, host_set) = host_module(&medium.module)?;
         let pass = MediumPass::new(arealight.context(), MediumPassInfo { options, module, host_set })?;
         arguments::write(out, handles::give(ArealightMediumPass { pass }), "out")
     })

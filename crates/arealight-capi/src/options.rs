@@ -106,7 +106,6 @@ mod tests {
             (ArealightPassOptions { surfaces: 1 << 30, ..zero }, "options.surfaces"),
             (ArealightPassOptions { surfaces: 16, ..zero }, "options.surfaces: polygon are what lights need"),
             (ArealightPassOptions { horizon: 2, ..zero }, "options.horizon"),
-            (ArealightPassOptions { horizon: 2, ..zero }, "options.horizon"),
             (ArealightPassOptions { specular_lobes: 3, ..zero }, "options.specular_lobes"),
             (ArealightPassOptions { lobes: 2, ..zero }, "options.lobes"),
             (ArealightPassOptions { footprint: 2, ..zero }, "options.footprint"),

@@ -41,7 +41,7 @@ pub unsafe extern "C" fn arealight_pass_create(
         let options = arguments::read(options, "options")?;
         let ways = [Descriptors::Sets, Descriptors::LightOffsets, Descriptors::Pushed];
         let descriptors = level(options.descriptors, &ways, "options.descriptors")?;
-        let (module, host_set) = host_module(&options.module, false)?;
+        let (module, host_set) = host_module(&options.module)?;
         let tiles = tile_options(options);
         if tiles.is_some() && module.is_some() {
             let why = "must be 0, since tiles are not classified by a G-buffer of the host's own";
@@ -58,19 +58,18 @@ pub unsafe extern "C" fn arealight_pass_create(
 /// A module of the host's, if it has one, and the layout of set 1.
 pub(crate) type HostModule = (Option<Vec<u32>>, Option<vk::DescriptorSetLayout>);
 
-/// What was given of a module; `reads_set`: of a pass of rays, whose module always reads set 1.
+/// What was given of a module.
 ///
 /// # Safety
 /// The pointer is null or valid.
-pub(crate) unsafe fn host_module(module: &ArealightModule, reads_set: bool) -> Result<HostModule, Failure> {
+pub(crate) unsafe fn host_module(module: &ArealightModule) -> Result<HostModule, Failure> {
     let ArealightModule { words, size, host_set_layout } = *module;
-    if words.is_null() {
+    if words.is_null() && size == 0 {
         return Ok(HostModule::default());
     }
     if !size.is_multiple_of(4) {
         return Err(Failure::argument(format!("module.size: {size} bytes are no whole words of SPIR-V")));
     }
-    arguments::refuse_null([(reads_set && host_set_layout == 0, "module.host_set_layout")])?;
     // SAFETY: the same contract.
     let words = unsafe { arguments::array(words, size / 4, "module.words") }?.to_vec();
     let layout = (host_set_layout != 0).then(|| vk::DescriptorSetLayout::from_raw(host_set_layout));

@@ -112,7 +112,7 @@ pub unsafe extern "C" fn arealight_shadow_pass_create(
         let arealight = handles::borrow(arealight, "arealight")?;
         let options = shade_options(arguments::read(options, "options")?)?;
         let shadows = arguments::read(shadows, "shadows")?;
-        let (module, host_set) = host_module(&shadows.module, true)?;
+        let (module, host_set) = host_module(&shadows.module)?;
         let shadows = shadow_options(shadows)?;
         let info = ShadowPassInfo { options, shadows, module, host_set };
         let pass = ShadowPass::new(arealight.context(), info)?;

@@ -31,7 +31,7 @@ pub struct ArealightHost {
     pub physical_device: *mut c_void,
     /// VkDevice, with a queue that computes. No optional feature or extension is needed.
     pub device: *mut c_void,
-    /// VkPipelineCache that pipelines are made with, or 0. Not used elsewhere while a pass is being made.
+    /// VkPipelineCache that pipelines are made with, or 0. It synchronises itself.
     pub pipeline_cache: u64,
 }
 
@@ -289,7 +289,7 @@ pub struct ArealightLightSummary {
 }
 
 /// Arrays of the host for packed lights, as the buffers of ArealightResources hold them; aligned to 4 bytes,
-/// null to ask for the sizes alone.
+/// null to ask for the sizes alone. Sizes become what is needed: set them before each call.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightPackedLights {
@@ -490,7 +490,7 @@ pub struct ArealightShadowFrame {
 }
 
 /// Arrays of the host for blockers, as the buffers of ArealightShadowResources hold them; aligned to 4 bytes,
-/// null to ask for the sizes alone.
+/// null to ask for the sizes alone. Sizes become what is needed: set them before each call.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightBlockerArrays {

@@ -134,7 +134,7 @@ fn uncoated_truth(
     let frame = SurfaceFrame::new(normal, view);
     let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
     let image = light.image.as_ref().map(|image| image.in_frame(&frame));
-    let bounds = light.bounds().filter(|_| light.two_sided || faces_origin(&vertices));
+    let bounds = light.limits().filter(|_| light.two_sided || faces_origin(&vertices));
     let region = bounds.map_or_else(Region::default, |bounds| {
         let most_texels = settings.max_evaluations / EVALUATIONS_PER_TEXEL;
         let region = match &image {

@@ -34,9 +34,9 @@ pub enum BadTexture {
         /// Height in texels.
         height: usize,
     },
-    /// A texel is NaN, infinite or negative.
-    #[error("texels[{index}]: {value} must be finite and not negative")]
-    NoLight {
+    /// A texel is NaN or infinite.
+    #[error("texels[{index}]: {value} must be finite")]
+    NotFinite {
         /// Its place.
         index: usize,
         /// What it is.
@@ -68,13 +68,13 @@ impl Texture {
     /// A texture of `width` × `height` texels, row after row from the top.
     ///
     /// # Errors
-    /// [`BadTexture`] where the count is wrong, or a texel negative or not finite.
+    /// [`BadTexture`] where the count is wrong, or a texel not finite.
     pub fn new(width: usize, height: usize, texels: Vec<DVec3>) -> Result<Self, BadTexture> {
         if texels.is_empty() || width.checked_mul(height) != Some(texels.len()) {
             return Err(BadTexture::Count { count: texels.len(), width, height });
         }
-        match texels.iter().position(|texel| !(texel.is_finite() && texel.min_element() >= 0.0)) {
-            Some(index) => Err(BadTexture::NoLight { index, value: texels[index] }),
+        match texels.iter().position(|texel| !texel.is_finite()) {
+            Some(index) => Err(BadTexture::NotFinite { index, value: texels[index] }),
             None => Ok(Self { width, height, texels }),
         }
     }

@@ -173,7 +173,8 @@ impl AreaLights {
             let mut image = TableImage::new(context, table, info.table_format)?;
             let memory = allocator.keep(image.allocate(&mut allocator.lock())?);
             let texels = mapped(context, &allocator, &image.bytes(table))?;
-            let horizons = table.lobe_horizons(info.options.quality.specular_lobes);
+            let horizons = info.tiles.map(|_| table.lobe_horizons(info.options.quality.specular_lobes));
+            let horizons = horizons.unwrap_or_default();
             let lobe_horizons = mapped(context, &allocator, cast_slice(&horizons))?;
             let textures = info.textures.map(|size| Textures::new(context, &allocator, size, frames));
             // From here on dropping it destroys what it has
@@ -229,9 +230,22 @@ impl AreaLights {
         Ok(())
     }
 
-    /// The pass that shades: for [`ShadePass::prepare`].
+    /// The pass that shades.
     pub fn shade_pass(&self) -> &ShadePass {
         &self.shade
+    }
+
+    /// Makes the pipelines of frames with such lights and such a view, which [`AreaLights::shade`] would
+    /// otherwise do at the first.
+    ///
+    /// # Errors
+    /// As [`AreaLights::shade`].
+    pub fn prepare(&self, lights: &[Light], view: &ShadeFrame) -> Result<(), Error> {
+        let lights = PackedLights::new(lights, DVec3::ZERO)?.summary();
+        let any = Some(Resource::buffer(self.lobe_horizons.raw));
+        self.shade.prepare(&ShadeFrame { lights, tile_lists: any, ..*view })?;
+        self.shadow.iter().try_for_each(|shadow| shadow.prepare(lights))?;
+        self.medium.iter().try_for_each(|(medium, _)| medium.prepare(lights))
     }
 
     /// The medium of the next frame, where [`AreaLightsInfo::medium`] has one.
@@ -282,7 +296,7 @@ impl AreaLights {
     ///
     /// # Safety
     /// As [`LightTextures::record_update`](crate::LightTextures::record_update), but for its sets; the frame
-    /// before at this place is done.
+    /// before at this place is done. The commands are those of the frame's [`AreaLights::shade`].
     ///
     /// # Errors
     /// As [`LightTextures::record_update`](crate::LightTextures::record_update); [`Error::InvalidArgument`]
@@ -310,7 +324,7 @@ impl AreaLights {
     ///
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with compute; it is submitted
-    ///   unless an error is returned.
+    ///   unless an error is returned. So acquire the image of a swapchain before: it may be out of date.
     /// - The frame before at this place is done.
     /// - The images are valid, of the view's size at least, and stay so until the frame is done.
     ///

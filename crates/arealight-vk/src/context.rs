@@ -75,6 +75,7 @@ impl Context {
                 storage_buffers: properties.limits.max_per_stage_descriptor_storage_buffers,
                 storage_buffer_alignment: properties.limits.min_storage_buffer_offset_alignment,
                 storage_buffer_range: properties.limits.max_storage_buffer_range,
+                volume_side: properties.limits.max_image_dimension3_d,
             },
             light_texture_limits: light_texture_limits(instance, physical_device)?,
             whole_modules: false,
@@ -86,8 +87,8 @@ impl Context {
     /// Makes pipelines with a cache of the host's.
     ///
     /// # Safety
-    /// The cache is the device's, and outlives what is made of the context. Nothing else uses it while a
-    /// pipeline is made (it is externally synchronised).
+    /// The cache is the device's, outlives what is made of the context, and was made without
+    /// `VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT`.
     #[must_use = "the context is returned"]
     pub unsafe fn with_pipeline_cache(mut self, cache: vk::PipelineCache) -> Self {
         self.pipeline_cache = cache;
@@ -115,8 +116,14 @@ impl Context {
     }
 
     /// The functions of `VK_KHR_push_descriptor`, with which the device was made.
-    pub(crate) fn push_descriptors(&self) -> ash::khr::push_descriptor::Device {
-        ash::khr::push_descriptor::Device::new(&self.instance, &self.device)
+    pub(crate) fn push_descriptors(&self) -> Result<ash::khr::push_descriptor::Device, Error> {
+        let (device, name) = (self.device.handle(), c"vkCmdPushDescriptorSetKHR");
+        // SAFETY: the device is valid by the contract of Context::new.
+        if unsafe { self.instance.get_device_proc_addr(device, name.as_ptr()) }.is_none() {
+            let needed_by = "pushed descriptors";
+            return Err(Error::MissingFeature { feature: "VK_KHR_push_descriptor", needed_by });
+        }
+        Ok(ash::khr::push_descriptor::Device::new(&self.instance, &self.device))
     }
 
     /// The device's function table.

@@ -86,7 +86,7 @@ impl Layouts {
             bindings,
             host_set,
             descriptors,
-            push: (descriptors == Descriptors::Pushed).then(|| context.push_descriptors()),
+            push: (descriptors == Descriptors::Pushed).then(|| context.push_descriptors()).transpose()?,
             sampler: vk::Sampler::null(),
             set_layout: vk::DescriptorSetLayout::null(),
             pipeline_layout: vk::PipelineLayout::null(),
@@ -209,23 +209,11 @@ impl Layouts {
         }
     }
 
-    /// # Safety
-    /// As [`ComputePass::write_set`].
-    pub(crate) unsafe fn write_set(
-        &self,
-        set: vk::DescriptorSet,
-        resources: &[Resource],
-    ) -> Result<(), Error> {
-        // SAFETY: the same contract.
-        unsafe { self.write_set_without(set, resources, &[]) }
-    }
-
-    /// As [`Layouts::write_set`], where something stands in the place of the bindings `absent`, for frames
-    /// that do not read them.
+    /// Something stands in the place of the bindings `absent`, for frames that do not read them.
     ///
     /// # Safety
     /// As [`ComputePass::write_set`].
-    pub(crate) unsafe fn write_set_without(
+    pub(crate) unsafe fn write_set(
         &self,
         set: vk::DescriptorSet,
         resources: &[Resource],
@@ -424,7 +412,7 @@ impl Drop for Layouts {
     }
 }
 
-/// Only tiles and the kernels of our own tools bind more than every Vulkan device can.
+/// Tiles, shadows, media and counts of lights bind more than every Vulkan device can.
 fn check_limits(context: &Context, kernel: &'static Kernel, bindings: &[Binding]) -> Result<(), Error> {
     use BindingKind::{FilteredImage, SampledImage, StorageBuffer, StorageImage};
     let limits = context.limits;

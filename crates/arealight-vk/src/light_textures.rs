@@ -1,6 +1,6 @@
 //! The lights' textures on the GPU: an array image with a layer for each, and the passes that filter them.
 
-use crate::context::Context;
+use crate::context::{COPIED, Context};
 use crate::error::Error;
 use crate::image::{Image, ImageInfo};
 use crate::image_memory::image_memory;
@@ -233,9 +233,8 @@ impl LightTextures {
                 &black,
                 &[self.image.range()],
             );
-            let cleared = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
             let used = (vk::PipelineStageFlags::ALL_COMMANDS, READ | WRITE);
-            self.context.record_barrier(command_buffer, cleared, used);
+            self.context.record_barrier(command_buffer, COPIED, used);
         }
     }
 
@@ -266,9 +265,7 @@ impl LightTextures {
         for set in level_sets.iter().copied().chain(updates.iter().map(|update| update.source_set)) {
             self.context.written_sets.check(set)?;
         }
-        let layers = self.runs_of_layers(updates)?;
-        let constants: Vec<_> =
-            updates.iter().map(|update| self.load_constants(update)).collect::<Result<_, _>>()?;
+        let (layers, constants) = self.check_updates(updates)?;
         if updates.is_empty() {
             return Ok(());
         }
@@ -326,7 +323,15 @@ impl LightTextures {
         Err(Error::InvalidArgument { field: "level_sets", message })
     }
 
-    /// The layers of the updates, as ranges of consecutive ones.
+    /// The layers of the updates, as ranges of consecutive ones, and their constants.
+    pub(crate) fn check_updates(
+        &self,
+        updates: &[TextureUpdate],
+    ) -> Result<(Vec<Range<u32>>, Vec<TextureLoadConstants>), Error> {
+        let constants = updates.iter().map(|update| self.load_constants(update)).collect::<Result<_, _>>()?;
+        Ok((self.runs_of_layers(updates)?, constants))
+    }
+
     fn runs_of_layers(&self, updates: &[TextureUpdate]) -> Result<Vec<Range<u32>>, Error> {
         let wrong = |message| Err(Error::InvalidArgument { field: "layer", message });
         let mut layers: Vec<u32> = updates.iter().map(|update| update.layer).collect();

@@ -31,6 +31,8 @@ pub(crate) struct DescriptorLimits {
     pub(crate) storage_buffer_alignment: vk::DeviceSize,
     /// `maxStorageBufferRange`.
     pub(crate) storage_buffer_range: u32,
+    /// `maxImageDimension3D`.
+    pub(crate) volume_side: u32,
 }
 
 impl DescriptorLimits {

@@ -47,9 +47,10 @@ pub struct MediumResources {
 /// What differs from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MediumFrame {
-    /// Froxels across, down and away from the camera: at most 65535 each. 160 x 90 x 64 is usual.
+    /// Froxels across, down and away from the camera: at most 65535 each, and a volume of the device's.
+    /// 160 x 90 x 64 is usual.
     pub froxels: [u32; 3],
-    /// The picture's size in pixels.
+    /// The picture's size in pixels, which is that of the images.
     pub size: [u32; 2],
     /// The position of a perspective camera, relative to the origin that lights are packed with.
     pub camera: Vec3,
@@ -125,7 +126,7 @@ impl MediumPass {
     pub unsafe fn new(context: &Context, info: MediumPassInfo) -> Result<Self, Error> {
         let MediumPassInfo { options, module, host_set } = info;
         let module = module.unwrap_or_else(|| MEDIUM_SCATTER.words());
-        check_module(&module, &MEDIUM_SCATTER)?;
+        check_module(&module, &MEDIUM_SCATTER, host_set.is_some())?;
         if options.samples > MediumOptions::MOST_SAMPLES {
             let message = format!("is {}, and at most {}", options.samples, MediumOptions::MOST_SAMPLES);
             return Err(Error::InvalidArgument { field: "samples", message });
@@ -202,9 +203,10 @@ impl MediumPass {
             "blocker_triangles" => blockers.triangles,
             _ => shade.at(binding),
         };
-        let all: Vec<_> = self.layouts().bindings().iter().map(of).collect();
+        let bindings = self.layouts().bindings();
+        let all: Vec<_> = bindings.iter().map(of).collect();
         // SAFETY: the same contract.
-        unsafe { self.layouts().write_set(set, &all) }
+        unsafe { self.layouts().write_set(set, &all, &shade.absent(bindings)) }
     }
 
     /// Makes the pipelines for a frame of these lights, which [`MediumPass::record`] would otherwise do when
@@ -286,7 +288,7 @@ impl MediumPass {
         bound: impl Into<Bound<'a>>,
         frame: &MediumFrame,
     ) -> Result<(), Error> {
-        let sets = bound.into().sets(self.layouts())?;
+        let sets = bound.into().sets(self.layouts(), frame.lights)?;
         let constants = constants_of(frame)?;
         let bytes = bytemuck::bytes_of(&constants);
         let [columns, rows, slices] = frame.froxels;

@@ -17,7 +17,7 @@ const MOST_IDS: u32 = 4_194_303;
 /// Refuses incomplete modules, undefined ids, and modules without the kernel's entry point, workgroup size
 /// and bindings of set 0. Types and control flow are not looked at: a module that passes may still be
 /// invalid, which a validator says.
-pub(crate) fn check_module(words: &[u32], kernel: &Kernel) -> Result<(), Error> {
+pub(crate) fn check_module(words: &[u32], kernel: &Kernel, has_host_set: bool) -> Result<(), Error> {
     let fault = |message: String| Error::InvalidArgument { field: "module", message };
     // The header, and the lengths of instructions
     if words.first() != Some(&MAGIC) {
@@ -39,7 +39,7 @@ pub(crate) fn check_module(words: &[u32], kernel: &Kernel) -> Result<(), Error> 
     let module = load_words(words).map_err(|error| fault(format!("cannot be read: {error}")))?;
     check_ids(&module, ids).map_err(fault)?;
     check_entry_point(&module, kernel).map_err(fault)?;
-    check_bindings(&module, kernel).map_err(fault)
+    check_bindings(&module, kernel, has_host_set).map_err(fault)
 }
 
 /// Refuses ids that are used and not defined, or not below the header's bound.
@@ -92,7 +92,7 @@ fn check_entry_point(module: &Module, kernel: &Kernel) -> Result<(), String> {
     Ok(())
 }
 
-fn check_bindings(module: &Module, kernel: &Kernel) -> Result<(), String> {
+fn check_bindings(module: &Module, kernel: &Kernel, has_host_set: bool) -> Result<(), String> {
     let types: HashMap<Word, &Instruction> =
         module.types_global_values.iter().filter_map(|one| Some((one.result_id?, one))).collect();
     let decorated = |wanted: Decoration| -> HashMap<Word, u32> {
@@ -108,8 +108,10 @@ fn check_bindings(module: &Module, kernel: &Kernel) -> Result<(), String> {
     };
     let (sets, bindings) = (decorated(Decoration::DescriptorSet), decorated(Decoration::Binding));
     for (id, number) in &bindings {
-        if sets.get(id).copied().unwrap_or(0) != 0 {
-            continue;
+        match sets.get(id).copied().unwrap_or(0) {
+            0 => {}
+            1 if has_host_set => continue,
+            set => return Err(format!("reads set {set}, whose layout is not given: see host_set")),
         }
         let Some(expected) = kernel.bindings().iter().find(|one| one.number == *number) else {
             return Err(format!("binds {number} of set 0, which kernel '{}' does not have", kernel.name));
@@ -169,13 +171,13 @@ mod tests {
     use arealight::kernels::{ALL, SHADE, SHADOW_RAYS};
 
     fn refusal(words: &[u32]) -> String {
-        check_module(words, &SHADE).unwrap_err().to_string()
+        check_module(words, &SHADE, false).unwrap_err().to_string()
     }
 
     #[test]
     fn our_own_modules_pass_and_another_kernel_s_does_not() {
         for kernel in ALL {
-            check_module(&kernel.words(), kernel).unwrap();
+            check_module(&kernel.words(), kernel, false).unwrap();
         }
         let text = refusal(&SHADOW_RAYS.words());
         assert!(text.contains("kernel 'shade'"), "{text}");
@@ -192,7 +194,7 @@ mod tests {
         }
         let step = ends.len() / 100;
         for end in ends.into_iter().step_by(step).chain([whole.len() - 1]) {
-            assert!(check_module(&whole[..end], &SHADOW_RAYS).is_err(), "{end} of {} words", whole.len());
+            assert!(check_module(&whole[..end], &SHADOW_RAYS, false).is_err(), "{end} words");
         }
     }
 
@@ -214,6 +216,10 @@ mod tests {
         // Without the end of its last function; and with an instruction that is longer than what is left
         assert!(refusal(&whole[..whole.len() - 1]).contains("cannot be read"));
         assert!(refusal(&[whole.as_slice(), &[0x0005_0000]].concat()).contains("cut off"));
+        // OpDecorate some variable DescriptorSet 0
+        let set = whole.windows(4).position(|w| (w[0], w[2], w[3]) == (0x0004_0047, 34, 0)).unwrap() + 3;
+        assert!(with(set, 1).contains("reads set 1, whose layout is not given"));
+        assert!(with(set, 2).contains("reads set 2"));
     }
 
     #[test]
@@ -225,7 +231,7 @@ mod tests {
             let mut words = whole.clone();
             let at = 1 + step * (whole.len() - 1) / 400;
             words[at] ^= 1 << (step * 7 % 32);
-            refused += usize::from(check_module(&words, &SHADE).is_err());
+            refused += usize::from(check_module(&words, &SHADE, false).is_err());
         }
         assert!(refused > 150, "{refused} of 400");
     }

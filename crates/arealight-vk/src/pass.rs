@@ -55,7 +55,7 @@ impl ComputePass {
         module: &[u32],
         specialization: &[(u32, u32)],
     ) -> Result<Self, Error> {
-        check_module(module, kernel)?;
+        check_module(module, kernel, false)?;
         // SAFETY: the same contract.
         unsafe { Self::of(&Layouts::new(context, kernel)?, kernel, module, specialization) }
     }
@@ -112,7 +112,7 @@ impl ComputePass {
     /// is written.
     pub unsafe fn write_set(&self, set: vk::DescriptorSet, resources: &[Resource]) -> Result<(), Error> {
         // SAFETY: the same contract.
-        unsafe { self.layouts.write_set(set, resources) }
+        unsafe { self.layouts.write_set(set, resources, &[]) }
     }
 
     /// Records binding, push constants and one dispatch. Barriers before and after are the host's, by

@@ -5,8 +5,9 @@ use crate::layouts::Layouts;
 use crate::pass::ComputePass;
 use arealight::kernels::Kernel;
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::sync::{Arc, Mutex, PoisonError};
+
+type Made = HashMap<Vec<(u32, u32)>, Arc<ComputePass>>;
 
 /// The pipelines of a kernel, made when they are first needed and kept.
 #[derive(Debug)]
@@ -14,7 +15,7 @@ pub(crate) struct Pipelines {
     layouts: Arc<Layouts>,
     kernel: &'static Kernel,
     module: Vec<u32>,
-    made: Mutex<HashMap<Vec<(u32, u32)>, ComputePass>>,
+    made: Mutex<Made>,
 }
 
 impl Pipelines {
@@ -41,16 +42,17 @@ impl Pipelines {
         specialization: Vec<(u32, u32)>,
         act: impl FnOnce(&ComputePass),
     ) -> Result<(), Error> {
-        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        let pass = match made.entry(specialization) {
-            Entry::Occupied(found) => found.into_mut(),
-            Entry::Vacant(place) => {
-                // SAFETY: by the contract of Pipelines::new.
-                let pass = unsafe { ComputePass::of(&self.layouts, self.kernel, &self.module, place.key()) }?;
-                place.insert(pass)
-            }
+        let made = || self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = made().get(&specialization).cloned();
+        let pass = if let Some(pass) = found {
+            pass
+        } else {
+            // Others record meanwhile; of two threads that make the same the first one's stays
+            // SAFETY: by the contract of Pipelines::new.
+            let pass = unsafe { ComputePass::of(&self.layouts, self.kernel, &self.module, &specialization) }?;
+            Arc::clone(made().entry(specialization).or_insert(Arc::new(pass)))
         };
-        act(pass);
+        act(&pass);
         Ok(())
     }
 }

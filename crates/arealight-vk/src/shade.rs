@@ -89,18 +89,18 @@ impl ShadePass {
     /// - As [`crate::ComputePass::new`]: drop the pass when no recorded use of it is pending, before the
     ///   device goes.
     /// - Modules are valid SPIR-V of this version's kernels; [`ShadePassInfo::host_set`] is a layout of the
-    ///   device, valid as long as the pass. With [`Descriptors::Pushed`] the device was made with
-    ///   `VK_KHR_push_descriptor`.
+    ///   device, valid as long as the pass.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] names the field that is out of range, or a module without the kernel's
     /// entry point and bindings; [`Error::MissingFeature`] where the device has too few storage buffers for a
-    /// stage, which tiles alone can need; [`Error::Vulkan`] where a call fails.
+    /// stage, or was made without `VK_KHR_push_descriptor` that [`Descriptors::Pushed`] needs;
+    /// [`Error::Vulkan`] where a call fails.
     pub unsafe fn new(context: &Context, info: impl Into<ShadePassInfo>) -> Result<Self, Error> {
         let ShadePassInfo { options, tiles, table_size, module, tile_module, host_set, descriptors } =
             info.into();
         check_options(options)?;
-        let shade = module_of(&SHADE, options, module.as_deref())?;
+        let shade = module_of(&SHADE, options, (module.as_deref(), host_set.is_some()))?;
         // Frames without tiles have none of their bindings
         let is_used = |name| match name {
             LIGHT_COUNTS => options.light_counts,
@@ -118,7 +118,8 @@ impl ShadePass {
                     return Err(Error::InvalidArgument { field: "tile_module", message });
                 }
                 Some(tiles) => {
-                    let classify = module_of(&CLASSIFY, options, tile_module.as_deref())?;
+                    let classify =
+                        module_of(&CLASSIFY, options, (tile_module.as_deref(), host_set.is_some()))?;
                     Some(Tiles::new(&layouts, classify, tiles, table_size)?)
                 }
             };
@@ -195,7 +196,7 @@ impl ShadePass {
     pub unsafe fn write_set(&self, set: vk::DescriptorSet, resources: &ShadeResources) -> Result<(), Error> {
         let (resources, absent) = self.in_order(resources)?;
         // SAFETY: the same contract.
-        unsafe { self.pipelines.layouts().write_set_without(set, &resources, &absent) }
+        unsafe { self.pipelines.layouts().write_set(set, &resources, &absent) }
     }
 
     /// Makes the pipelines for frames whose lights need what this one's do, where they are not made yet. That
@@ -216,9 +217,9 @@ impl ShadePass {
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with compute.
     /// - A set was written by [`ShadePass::write_set`], or what is pushed is valid, with images that hold the
-    ///   frame's pixels and buffers that hold the lights that `frame.lights` is of; with tiles, with
-    ///   `frame.tile_lists`, a buffer of [`ShadePass::tile_memory`] for that size, which no pending commands
-    ///   use without a barrier between.
+    ///   frame's pixels and buffers that hold the lights that `frame.lights` is of; picks are of
+    ///   [`ShadePass::picks_size`]; with tiles, with `frame.tile_lists`, a buffer of
+    ///   [`ShadePass::tile_memory`] for that size, which no pending commands use without a barrier between.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] names the field of `frame` that is wrong, or the resource that its lights
@@ -330,11 +331,15 @@ impl ShadePass {
 }
 
 /// A kernel's own module or the host's, for the images of a pass.
-fn module_of(kernel: &'static Kernel, options: ShadeOptions, own: Option<&[u32]>) -> Result<Vec<u32>, Error> {
+fn module_of(
+    kernel: &'static Kernel,
+    options: ShadeOptions,
+    (own, has_host_set): (Option<&[u32]>, bool),
+) -> Result<Vec<u32>, Error> {
     let mut words = match own {
         None => kernel.words(),
         Some(words) => {
-            check_module(words, kernel)?;
+            check_module(words, kernel, has_host_set)?;
             words.to_vec()
         }
     };

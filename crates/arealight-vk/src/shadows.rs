@@ -125,7 +125,7 @@ impl ShadowPass {
         let ShadowPassInfo { options, shadows, module, host_set } = info;
         check_rays(options)?;
         let module = module.unwrap_or_else(|| SHADOW_RAYS.words());
-        check_module(&module, &SHADOW_RAYS)?;
+        check_module(&module, &SHADOW_RAYS, host_set.is_some())?;
         let mut filter = SHADOW_FILTER.words();
         store_to(options.format, &mut filter);
         let binding = (Descriptors::Sets, host_set);
@@ -212,7 +212,7 @@ impl ShadowPass {
         };
         let all: Vec<_> = layouts.bindings().iter().map(of).collect();
         // SAFETY: the same contract.
-        unsafe { layouts.write_set(set, &all) }
+        unsafe { layouts.write_set(set, &all, &shade.absent(layouts.bindings())) }
     }
 
     /// Makes the pipelines for a frame of these lights, which [`ShadowPass::record`] would otherwise do when
@@ -250,8 +250,8 @@ impl ShadowPass {
     ///
     /// # Safety
     /// As [`crate::ShadePass::record`]; the set was written by [`ShadowPass::write_set`] with `resources`,
-    /// and the host's allocated with the layout that the pass was made with. With a history, the frame before
-    /// of this view was recorded earlier on the same queue.
+    /// and the host's allocated with the layout that the pass was made with. A history's buffer is of
+    /// [`plan::shadow_history_size`], and the frame before of this view was recorded earlier on its queue.
     ///
     /// # Errors
     /// As [`crate::ShadePass::record`]; [`Error::InvalidArgument`] names the field of `frame` that is
@@ -315,7 +315,7 @@ impl ShadowPass {
         resources: &ShadowResources,
         frame: &ShadowFrame<'_>,
     ) -> Result<ReadyFrame, Error> {
-        let sets = bound.sets(self.rays.layouts())?;
+        let sets = bound.sets(self.rays.layouts(), frame.shade.lights)?;
         let view = view_of(self.options, frame.shade)?;
         if frame.shade.rows.is_some() {
             let message = "are a part of the frame, but shadows are of all of it: record its parts by the \

@@ -1,6 +1,6 @@
 //! Tiles of the shade pass: how they are classified, and how the classes are shaded.
 
-use crate::context::COPIED;
+use crate::context::{COPIED, USED, WRITTEN};
 use crate::error::Error;
 use crate::frame::ShadeFrame;
 use crate::layouts::Layouts;
@@ -148,18 +148,16 @@ impl Tiles {
 
         let (buffer, offset) = frame.lists;
         let context = self.classify.layouts().context();
-        let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
-        let (read, write) = (vk::AccessFlags::SHADER_READ, vk::AccessFlags::SHADER_WRITE);
         // SAFETY: the same contract; the buffer holds a record per class, whose indirect dispatch the
         // classify kernel writes.
         unsafe {
             self.record_no_tiles(command_buffer, frame);
             bind();
-            context.record_barrier(command_buffer, COPIED, (compute, read | write));
+            context.record_barrier(command_buffer, COPIED, USED);
             self.classify.with(self.classify_constants(options, frame), |pass| {
                 pass.record_rows(command_buffer, bytes, (groups, frame.rows.clone()));
             })?;
-            context.record_barrier(command_buffer, (compute, write), READ_INDIRECTLY);
+            context.record_barrier(command_buffer, WRITTEN, READ_INDIRECTLY);
             for class in dispatched(options, frame) {
                 let place = offset + class as u64 * 4 * tiles::CLASS_WORDS as u64;
                 let specialization = plan::shade_tiles_specialization(options, frame.lights, class);

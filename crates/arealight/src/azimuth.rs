@@ -1,7 +1,7 @@
 //! Profiles that are not round: factors by azimuth, and the few harmonics of them that the GPU has.
 
 use glam::DVec2;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Factors by the angle from the front and the azimuth about it.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,8 +87,7 @@ fn harmonics(row: &[f64]) -> Harmonics {
         let turn = step * (k + 1) as f64;
         let at = |(index, factor): (usize, &f64)| DVec2::from_angle(turn * index as f64) * *factor;
         let sum: DVec2 = row.iter().enumerate().map(at).sum();
-        // Too few samples tell nothing of it
-        let linear = if turn < PI { ((0.5 * turn).sin() / (0.5 * turn)).powi(2) } else { 0.0 };
+        let linear = ((0.5 * turn).sin() / (0.5 * turn)).powi(2);
         sum * (2.0 * linear / (row.len() as f64 * mean.max(1e-30)))
     })
 }

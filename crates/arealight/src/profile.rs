@@ -124,7 +124,7 @@ impl Profile {
     /// # Errors
     /// [`LightFault::BadProfile`] for other angles, and as [`Profile::new`].
     pub fn cone(inner: f64, outer: f64, levels: u32) -> Result<Self, LightFault> {
-        if !(outer > 0.0 && outer <= FRAC_PI_2 && inner >= 0.0) {
+        if !(outer > 0.0 && outer <= FRAC_PI_2 + 1e-6 && inner >= 0.0) {
             let reason = format!("a cone of {inner} and {outer} rad: 0 <= inner, 0 < outer <= pi / 2");
             return Err(LightFault::BadProfile { reason });
         }
@@ -408,7 +408,21 @@ mod tests {
         for (inner, outer) in [(0.0, 0.0), (-1.0, 1.0), (0.0, 2.0), (f64::NAN, 1.0), (0.0, f64::NAN)] {
             assert!(Profile::cone(inner, outer, 4).is_err(), "{inner} {outer}");
         }
+        // As a float32 has half of pi
+        assert!(Profile::cone(0.0, f64::from(std::f32::consts::FRAC_PI_2), 4).is_ok());
         assert!(Profile::spread(0.0, 4).is_err() && Profile::spread(f64::NAN, 4).is_err());
+    }
+
+    #[test]
+    fn few_azimuths_keep_their_shape() {
+        let row = |degrees: f64| vec![degrees, 1.0, 0.2, 0.6, 0.2];
+        let profile = Profile::new(&[row(0.0), row(80.0)], 4).unwrap();
+        for azimuth in [0.0, 0.4, 0.5 * PI, 2.0, PI] {
+            let part = profile.azimuth_part(0.9, DVec2::from_angle(azimuth), 1.0);
+            // Six harmonics of the cosine's have .03 of it; none are .5
+            let off = part * 0.5 - profile.factor_toward(0.9, azimuth);
+            assert!(off.abs() < 0.05, "{azimuth}: {off}");
+        }
     }
 
     #[test]

@@ -58,15 +58,17 @@ impl Deferred {
         Ok(())
     }
 
-    /// Draws and shades the scene as it is after `seconds`, and records `then` behind it, which is given the
-    /// place among the frames in flight, and the commands. Waits for nothing but the frame before the last.
-    pub fn frame(
+    /// Draws and shades the scene as it is after `seconds`. `first` is given the place among the frames in
+    /// flight; `then`, recorded behind, what that returns. Waits for nothing but the frame before the last.
+    pub fn frame<T>(
         &mut self,
         seconds: f64,
-        then: impl FnOnce(usize, vk::CommandBuffer) -> Result<Semaphores>,
+        first: impl FnOnce(usize) -> Result<T>,
+        then: impl FnOnce(T, vk::CommandBuffer) -> Semaphores,
     ) -> Result<()> {
         let Self { frames, vertices, g_buffer, area_lights, .. } = self;
         frames.submit_with(|place, commands| {
+            let found = first(place)?;
             let (camera, triangles) = (scene::camera(g_buffer.size), scene::vertices(seconds));
             vertices[place].upload(&triangles)?;
             // SAFETY: the commands are being recorded, and the frame before at this place is done.
@@ -95,7 +97,7 @@ impl Deferred {
             // SAFETY: as above; the images outlive the frame.
             unsafe { area_lights.shade(commands, place, &lights, origin, &view, &images) }?;
             // doc end
-            then(place, commands)
+            Ok(then(found, commands))
         })
     }
 

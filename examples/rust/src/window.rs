@@ -108,17 +108,16 @@ impl View {
     fn frame(&self, engine: &mut Deferred, seconds: f64) -> Result<bool> {
         let Self { swapchain, tone_map, .. } = self;
         // doc: frame
-        // Behind the frame's own commands: acquire an image, and bring the radiance to it; then show it
+        // Acquire an image, before anything is recorded that would not be submitted without; behind the
+        // frame's own commands bring the radiance to it; then show it
         let mut shown = 0;
-        engine.frame(seconds, |place, commands| {
-            // SAFETY: the place's last frame is over; the commands are being recorded, and wait for the image
-            // at TRANSFER.
-            unsafe {
-                let (image, index, semaphores) = swapchain.acquire(place)?;
-                tone_map.record(commands, image, vk::ImageLayout::PRESENT_SRC_KHR);
-                shown = index;
-                Ok(semaphores)
-            }
+        // SAFETY: the place's last frame is over.
+        let acquire = |place| Ok(unsafe { swapchain.acquire(place) }?);
+        engine.frame(seconds, acquire, |(image, index, semaphores), commands| {
+            shown = index;
+            // SAFETY: the commands are being recorded, and wait for the image at TRANSFER.
+            unsafe { tone_map.record(commands, image, vk::ImageLayout::PRESENT_SRC_KHR) };
+            semaphores
         })?;
         // SAFETY: the frame was submitted, and leaves the image in that layout.
         Ok(unsafe { swapchain.present(shown) }?)

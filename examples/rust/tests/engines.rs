@@ -32,7 +32,7 @@ fn both_engines_make_the_same_picture_whatever_they_drew_before() {
         (Deferred::new(&host, SIZE).unwrap(), Forward::new(&host, SIZE).unwrap());
     let mut pictures = |seconds: &[f64]| {
         for &seconds in seconds {
-            deferred.frame(seconds, |_, _| Ok(Semaphores::default())).unwrap();
+            deferred.frame(seconds, |_| Ok(()), |(), _| Semaphores::default()).unwrap();
             forward.frame(seconds).unwrap();
         }
         (deferred.picture().unwrap(), forward.picture().unwrap())
@@ -68,7 +68,7 @@ fn both_engines_make_the_same_picture_whatever_they_drew_before() {
     // Neither do other sizes, larger and smaller, with frames of the size before in flight
     let mut of_size = |size| {
         deferred.resize(size).unwrap();
-        deferred.frame(0.5, |_, _| Ok(Semaphores::default())).unwrap();
+        deferred.frame(0.5, |_| Ok(()), |(), _| Semaphores::default()).unwrap();
         deferred.picture().unwrap()
     };
     let (large, small) = (of_size([136, 120]), of_size([24, 40]));

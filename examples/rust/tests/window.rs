@@ -50,7 +50,7 @@ fn a_window_shows_what_the_engine_draws() {
     // frame's
     let mut engine = Deferred::new(&host, SIZE).unwrap();
     let frames = (0..FRAMES).map(|frame| {
-        engine.frame(f64::from(frame) / FRAME_RATE, |_, _| Ok(Semaphores::default())).unwrap();
+        engine.frame(f64::from(frame) / FRAME_RATE, |_| Ok(()), |(), _| Semaphores::default()).unwrap();
         engine.picture().unwrap().encoded()
     });
     let frames: Vec<_> = frames.collect();

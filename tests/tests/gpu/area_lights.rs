@@ -93,6 +93,7 @@ fn frames_of_any_lights_and_sizes_are_those_of_the_recorder() {
             {
                 let floor = Floor::new(&engine, &lights);
                 let view = ShadeFrame { size, ..floor.frame() };
+                area_lights.prepare(&lights, &view).unwrap();
                 let ours = picture(area_lights, number % 2, (&floor, &lights), &view);
                 let resources = floor.resources();
                 let theirs = floor.shade(options, tiles.is_some(), (&resources, &view, Descriptors::Sets));
@@ -297,10 +298,16 @@ fn images_on_lights_are_loaded_before_a_frame() {
         assert!(black.iter().all(|texel| texel.truncate() == Vec3::ZERO));
         for place in [1, 0, 1] {
             let images = [(read(&red), update)];
-            // SAFETY: The commands are waited for, and the image outlives them.
-            let mut load = |commands| unsafe { area_lights.load_textures(commands, place, &images) }.unwrap();
-            // As often as the host likes
-            engine.host().submit(|commands| (0..2).for_each(|_| load(commands))).unwrap();
+            let none = [(read(&red), TextureUpdate { layer: 9, ..update })];
+            let mut load = |commands, images| {
+                // SAFETY: The commands are waited for, and the image outlives them.
+                unsafe { area_lights.load_textures(commands, place, images) }.is_ok()
+            };
+            // As often as the host likes; what is refused changes nothing
+            let mut loads = |commands| [&images, &none, &images].map(|images| load(commands, images));
+            let mut loaded = [false; 3];
+            engine.host().submit(|commands| loaded = loads(commands)).unwrap();
+            assert_eq!(loaded, [true, false, true]);
             let lit = picture(area_lights, place, (&floor, &lights), &floor.frame());
             assert!(lit.iter().all(|texel| texel.y == 0.0 && texel.z == 0.0));
             assert!(lit.iter().filter(|texel| texel.x > 0.01).count() > lit.len() / 4);

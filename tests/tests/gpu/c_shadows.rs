@@ -67,11 +67,9 @@ impl<'a> CPasses<'a> {
             let mut create = |shadows: *const _| {
                 arealight_shadow_pass_create(arealight, &raw const options, shadows, &raw mut shadow)
             };
-            // A module of the host's reads set 1
-            let words = [0_u32; 4];
-            let module = ArealightModule { words: words.as_ptr(), size: 16, host_set_layout: 0 };
+            let module = ArealightModule { size: 16, ..ArealightModule::default() };
             let refusal = create(&ArealightShadowOptions { module, ..shadows });
-            refused(refusal, ArealightResult::ErrorArgument, "module.host_set_layout: is null");
+            refused(refusal, ArealightResult::ErrorArgument, "module.words: is null");
             good(create(&raw const shadows));
         }
         Self { engine, library, shade, shadow }

@@ -1,7 +1,9 @@
 //! What a host may get wrong about shadows: each is an error that names the field, and nothing is recorded.
 
 use arealight_tests::prelude::*;
-use arealight_vk::{BlockerResources, ShadowOptions, ShadowPass, ShadowPassInfo, ShadowResources};
+use arealight_vk::{
+    BlockerResources, ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo, ShadowResources,
+};
 
 fn with_rays(shadow_rays: u32) -> ShadeOptions {
     ShadeOptions { shadow_rays, ..ShadeOptions::default() }
@@ -64,10 +66,18 @@ fn what_a_shadow_pass_reads_is_asked_for() {
             is(over_frames.write_set(none, &resources, &of_shadows), "history");
             of_shadows.history = Some(buffer);
             is(over_frames.write_set(none, &resources, &of_shadows), "motion");
+            of_shadows.blockers = Some(BlockerResources { nodes: buffer, triangles: buffer });
+            // Lights that the set was written without
+            let pool = engine.host().descriptor_pool(1, &shadow.pool_sizes(1)).unwrap();
+            let set = pool.allocate(shadow.set_layout()).unwrap();
+            shadow.write_set(set, &ShadeResources { shapes: None, ..resources }, &of_shadows).unwrap();
+            let lights = LightSummary { light_count: 1, shape_count: 1, ..LightSummary::default() };
+            let shade = &ShadeFrame { lights, size: [8, 8], ..ShadeFrame::default() };
+            let frame = ShadowFrame { shade, origin_shift: Vec3::ZERO };
+            is(shadow.record(vk::CommandBuffer::null(), set, &of_shadows, &frame), "shapes");
             of_shadows.shadow = Resource::buffer(vk::Buffer::null());
             let planes = resources.planes.with(Plane::Motion, resources.planes[Plane::Position]);
             let resources = ShadeResources { planes, ..resources };
-            of_shadows.blockers = Some(BlockerResources { nodes: buffer, triangles: buffer });
             is(over_frames.write_set(none, &resources, &of_shadows), "shadow_image");
         });
     }

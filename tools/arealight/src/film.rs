@@ -35,17 +35,16 @@ fn dithered(frame: &Canvas, dither: i32) -> Vec<u8> {
 
 /// Writes pictures of one size, so many a second, with the most colours that there are.
 pub fn save(path: &Path, frames: &[Canvas], rate: u32) -> Result<(), Failure> {
-    let delay = (100 / rate.max(1)).max(1) as u16;
-    let film = encode(frames, delay, Palette { colors: 255, dither: 6 });
+    let film = encode(frames, 100.0 / f64::from(rate.max(1)), Palette { colors: 255, dither: 6 });
     output::write(path, &film.map_err(|error| Failure::output(path, error))?)
 }
 
-/// Pictures of one size, each shown for `delay` hundredths of a second, again and again. Pixels that stay as
-/// they were are transparent, which is what keeps the file small.
+/// Pictures of one size, each shown for `delay` hundredths of a second in the mean, again and again. Pixels
+/// that stay as they were are transparent, which is what keeps the file small.
 ///
 /// # Errors
 /// [`EncodingError`] where a side is above 65,535 pixels.
-pub fn encode(frames: &[Canvas], delay: u16, palette: Palette) -> Result<Vec<u8>, EncodingError> {
+pub fn encode(frames: &[Canvas], delay: f64, palette: Palette) -> Result<Vec<u8>, EncodingError> {
     let Palette { colors, dither } = palette;
     let pixels: Vec<u8> = frames.iter().flat_map(|frame| dithered(frame, dither)).collect();
     let quantizer = NeuQuant::new(10, colors.into(), &pixels);
@@ -57,7 +56,8 @@ pub fn encode(frames: &[Canvas], delay: u16, palette: Palette) -> Result<Vec<u8>
     let mut encoder = Encoder::new(&mut film, width, height, &palette)?;
     encoder.set_repeat(Repeat::Infinite)?;
     let mut before: Vec<u8> = vec![];
-    for pixels in pixels.chunks(4 * usize::from(width) * usize::from(height)) {
+    let until = |frame: i32| (delay * f64::from(frame)).round();
+    for (pixels, shown) in pixels.chunks(4 * usize::from(width) * usize::from(height)).zip(0..) {
         let indices: Vec<u8> = pixels.chunks_exact(4).map(|rgba| quantizer.index_of(rgba) as u8).collect();
         let previous = before.iter().map(Some).chain(std::iter::repeat(None));
         let changed: Vec<u8> = indices
@@ -66,7 +66,7 @@ pub fn encode(frames: &[Canvas], delay: u16, palette: Palette) -> Result<Vec<u8>
             .map(|(index, before)| if before == Some(index) { colors } else { *index })
             .collect();
         encoder.write_frame(&Frame {
-            delay,
+            delay: (until(shown + 1) - until(shown)).max(1.0) as u16,
             dispose: DisposalMethod::Keep,
             transparent: Some(colors),
             width,
@@ -100,7 +100,7 @@ mod tests {
             assert!((mean(column) - f64::from(column as u32 / 2 * 4 + 60)).abs() < 4.0, "{column}");
         }
         assert_ne!(still, dithered(&frame, 0));
-        let film = encode(&[frame], 1, Palette { colors: 8, dither: 12 }).unwrap();
+        let film = encode(&[frame], 1.0, Palette { colors: 8, dither: 12 }).unwrap();
         assert_eq!(&film[..6], b"GIF89a");
     }
 }

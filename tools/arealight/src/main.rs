@@ -89,6 +89,11 @@ fn program() -> clap::Command {
 }
 
 fn main() -> ExitCode {
+    // Lavapipe gives each thread a part of a dispatch, and parts of a picture differ: many wait less
+    if std::env::var_os("LP_NUM_THREADS").is_none() {
+        // SAFETY: no other thread has begun.
+        unsafe { std::env::set_var("LP_NUM_THREADS", "32") };
+    }
     let matches = program().get_matches();
     let CommandLine { quiet, verbose, memory, command } =
         CommandLine::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());

@@ -1,5 +1,6 @@
 //! Cases whose light is partly hidden, as cases of what is visible of it.
 
+use arealight::LightShape;
 use arealight_cases::answers::Answer;
 use arealight_cases::cases::SupportedCase;
 use arealight_oracle::visibility::visible_parts;
@@ -25,7 +26,18 @@ pub fn parts(case: &SupportedCase) -> Vec<SupportedCase> {
     parts.retain(|part| area(part) > LEAST_PART * whole);
     parts
         .into_iter()
-        .map(|vertices| {
+        .map(|mut vertices| {
+            if case.light.profile.is_some() {
+                // Begin with an edge too short to be seen that says where the profile's azimuth does, where
+                // the outline stays convex
+                let edge = case.light.azimuth * (1e-9 * whole.sqrt());
+                let normal = LightShape::Polygon(vertices.clone()).area_vector();
+                let outside = |vertex: &DVec3| vertex.dot(edge.cross(normal));
+                let farthest = (0..vertices.len())
+                    .max_by(|a, b| outside(&vertices[*a]).total_cmp(&outside(&vertices[*b])));
+                vertices.rotate_left(farthest.unwrap_or(0));
+                vertices.insert(1, vertices[0] + edge);
+            }
             let mut part = case.clone();
             part.light.vertices = vertices;
             part.blockers.clear();

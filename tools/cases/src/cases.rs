@@ -167,8 +167,6 @@ pub struct SupportedCase {
     pub view: DVec3,
     /// The light, relative to the shading point, with the image that it shows.
     pub light: RelativeLight,
-    /// Where that image is from, and its coordinates.
-    pub texture: Option<CaseTexture>,
     /// What blocks the light, relative to the shading point.
     pub blockers: Vec<Blocker>,
 }
@@ -299,12 +297,15 @@ fn read_opening(light: &Fields) -> Result<Opening, CaseError> {
 }
 
 /// Levels of a profile where a case says nothing of them.
-const LEVELS: u32 = 4;
+const LEVELS: f64 = 4.0;
 
 fn read_profile(fields: &Fields) -> Result<Option<Profile>, CaseError> {
-    let levels = fields.optional("profile_levels", Fields::length)?.map_or(LEVELS, |levels| levels as u32);
+    let levels = fields.optional("profile_levels", Fields::number)?.unwrap_or(LEVELS);
+    if levels.fract() != 0.0 {
+        return Err(fields.error("profile_levels", &format!("{levels} must be a whole number")));
+    }
     let rows = fields.optional("profile", |f, field| f.list(field, Fields::row_at))?;
-    let profile = rows.map(|rows| Profile::new(&rows, levels)).transpose();
+    let profile = rows.map(|rows| Profile::new(&rows, levels as u32)).transpose();
     profile.map_err(|fault| fields.error("profile", &fault.to_string()))
 }
 

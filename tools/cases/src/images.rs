@@ -7,8 +7,8 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The largest image that is read: that of the largest light texture.
-const MAX_SIDE: usize = arealight::PyramidSize::LARGEST as usize;
+/// The largest image that is read: that of the largest picture of `arealight render`.
+const MAX_SIDE: usize = 8192;
 
 /// Images in one folder; each is read once.
 pub struct Images {
@@ -34,12 +34,19 @@ impl Images {
         if let Some(known) = self.known.get(path) {
             return known.clone();
         }
-        let image = self.read(&self.folder.join(path)).map(Arc::new);
+        let image = self.read(&self.folder.join(path)).and_then(|image| {
+            match image.texels().iter().position(|texel| texel.min_element() < 0.0) {
+                Some(index) => {
+                    Err(format!("texels[{index}]: {} must not be negative", image.texels()[index]))
+                }
+                None => Ok(Arc::new(image)),
+            }
+        });
         self.known.insert(path.to_owned(), image.clone());
         image
     }
 
-    /// The image at a path from anywhere.
+    /// The image at a path from anywhere; a picture may have what is below zero.
     pub fn read(&mut self, path: &Path) -> Result<Texture, String> {
         let about = std::fs::metadata(path).map_err(|error| error.to_string())?;
         if !about.is_file() {
@@ -106,7 +113,8 @@ mod tests {
                 .unwrap();
             let mut images = Images::beside(&folder.path().join("cases.json"), |_| 300);
             let error = images.load("f.exr").unwrap_err();
-            assert!(error.contains("must be finite and not negative"), "{error}");
+            assert!(error.contains(if texel < 0.0 { "must not be negative" } else { "must be finite" }));
+            assert_eq!(images.read(&folder.path().join("f.exr")).is_ok(), texel.is_finite());
         }
         let image = images.load("a.exr").unwrap();
         assert_eq!((image.width(), image.height()), (3, 2));

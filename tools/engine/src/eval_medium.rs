@@ -35,6 +35,7 @@ impl AsMut<Light> for MediumPoint {
 
 /// What a pipeline has of the lights' effects.
 const OF_LIGHTS: Effects = POLYGONAL
+    .union(Effects::AZIMUTH)
     .union(Effects::ELLIPSE)
     .union(Effects::SPHERE)
     .union(Effects::TUBE)

@@ -157,12 +157,8 @@ impl<'a> SceneRenderer<'a> {
         surfaces: Effects,
         mut shade: impl FnMut(&mut Self, Effects) -> Result<Option<Duration>, EngineError>,
     ) -> Result<Option<Duration>, EngineError> {
-        let mut total = Some(Duration::ZERO);
-        for surfaces in surfaces.passes() {
-            let took = shade(self, surfaces)?;
-            total = total.zip(took).map(|(total, took)| total + took);
-        }
-        Ok(total)
+        let took: Result<Vec<_>, _> = surfaces.passes().map(|surfaces| shade(self, surfaces)).collect();
+        Ok(took?.into_iter().sum())
     }
 
     /// As [`SceneRenderer::shade`], with everything that a pass can be told: positions come from an image of
@@ -194,12 +190,10 @@ impl<'a> SceneRenderer<'a> {
         parts: impl Iterator<Item = ShadeFrame>,
         record: impl Fn(vk::CommandBuffer, &ShadeFrame) -> Result<(), EngineError>,
     ) -> Result<Option<Duration>, EngineError> {
-        let mut total = Some(Duration::ZERO);
-        for part in parts {
-            let took = self.engine.host().try_submit_timed(|commands| record(commands, &part))?;
-            total = total.zip(took).map(|(total, took)| total + took);
-        }
-        Ok(total)
+        let host = self.engine.host();
+        let took: Result<Vec<_>, EngineError> =
+            parts.map(|part| host.try_submit_timed(|commands| record(commands, &part))).collect();
+        Ok(took?.into_iter().sum())
     }
 
     /// As [`SceneRenderer::shade`], by another kernel of the shade kernel's bindings and push constants: one

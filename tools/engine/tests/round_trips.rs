@@ -122,9 +122,10 @@ fn commands_are_timed_where_there_are_timestamps() {
     let Some(host) = device_or_skip() else { return };
     let buffer = host.storage_buffer("filled", &vec![0_u32; 1 << 20]).unwrap();
     let time = host
-        .submit_timed(|commands| {
+        .try_submit_timed(|commands| {
             // SAFETY: The commands are being recorded, and the buffer can be filled.
             unsafe { host.device().cmd_fill_buffer(commands, buffer.handle(), 0, vk::WHOLE_SIZE, 9) };
+            Ok::<_, HostError>(())
         })
         .unwrap();
     assert_eq!(time.is_some(), host.timestamp_valid_bits() > 0);

@@ -130,7 +130,10 @@ fn signaled_fence(host: &Host) -> Result<vk::Fence, HostError> {
 
 impl Drop for Frames {
     fn drop(&mut self) {
-        // A lost device has no work left either
+        // What hangs is not waited for, nor destroyed; a lost device has no work left either
+        if self.host.is_abandoned() {
+            return;
+        }
         let _ = self.wait();
         let device = self.host.device();
         // SAFETY: Nothing is pending.

@@ -64,22 +64,8 @@ impl Host {
         self.run(record, None).map(|_| ())
     }
 
-    /// As [`Host::submit`], and measures how long the GPU took from the first command to the last. `None`
+    /// As [`Host::try_submit`], and measures how long the GPU took from the first command to the last. `None`
     /// where the queue has no timestamps.
-    ///
-    /// # Errors
-    /// Those of [`Host::submit`].
-    pub fn submit_timed(
-        &self,
-        record: impl FnOnce(vk::CommandBuffer),
-    ) -> Result<Option<Duration>, HostError> {
-        self.try_submit_timed(|commands| {
-            record(commands);
-            Ok(())
-        })
-    }
-
-    /// As [`Host::submit_timed`], for a recording that can fail.
     ///
     /// # Errors
     /// The recording's, and those of [`Host::submit`].

@@ -408,14 +408,18 @@ ScenePoint scene_point(BvhHit hit, vec3 steps[2]) {
     point.film.ior = material.film_ior;
     point.film.thickness = mix(material.film_least_thickness, material.film_thickness,
                                texel[FILM_THICKNESS_TEXEL].g);
-    float transmission = material.transmission * texel[TRANSMISSION_TEXEL].a * (1.0 - point.metalness);
+    float transmission = material.transmission * texel[TRANSMISSION_TEXEL].a;
     point.transmitted = transmission * material.transmission_color * texel[TRANSMISSION_COLOR_TEXEL].rgb;
     // KHR_materials_transmission takes the place of what is diffused, on either side
-    float glass = material.glass * texel[GLASS_TEXEL].r * (1.0 - point.metalness);
+    float glass = material.glass * texel[GLASS_TEXEL].r;
     vec3 pane = glass * point.base_color;
-    point.transmitted = (1.0 - glass) * point.transmitted + pane;
+    point.transmitted = (1.0 - point.metalness) * ((1.0 - glass) * point.transmitted + pane);
+    pane *= 1.0 - point.metalness;
     point.pane = arealight_luminance(pane) / max(arealight_luminance(point.transmitted), 1e-30);
-    point.base_color *= (1.0 - glass) * (1.0 - transmission);
+    // Metal has its own colour still
+    float left = mix((1.0 - glass) * (1.0 - transmission), 1.0, point.metalness);
+    point.base_color *= left;
+    point.metalness /= max(left, 1e-6);
     point.emission = material.emission * texel[EMISSION_TEXEL].rgb;
     if ((material.flags & MATERIAL_UNLIT) != 0u) {
         point.emission = point.base_color;

@@ -60,6 +60,8 @@ pub(crate) fn floats<const N: usize>(
         vector
     });
     let vectors: Vec<[f32; N]> = vectors.collect();
+    // The bytes go, and these numbers once others are made of them
+    document.budget.give(2 * elements.bytes.len() as u64);
     match vectors.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
         Some(bad) => Err(document.not_finite(format!("{field}[{bad}]"), vectors[bad])),
         None => Ok(vectors),

@@ -54,7 +54,7 @@ fn rectangle() -> String {
     "rect".into()
 }
 
-fn white() -> [f32; 3] {
+pub(crate) fn white() -> [f32; 3] {
     [1.0; 3]
 }
 
@@ -62,7 +62,7 @@ fn thousand() -> f64 {
     1000.0
 }
 
-fn one() -> f64 {
+pub(crate) fn one() -> f64 {
     1.0
 }
 

@@ -5,6 +5,8 @@ use crate::error::SceneError;
 use crate::extensions;
 use crate::numbers::{self, Place, Places};
 use gltf::json;
+use std::cell::RefCell;
+use std::collections::HashSet;
 use std::path::{Component, Path, PathBuf};
 
 /// The largest file, buffer or encoded image that is read, in bytes.
@@ -24,6 +26,7 @@ pub(crate) struct Document {
     folder: Option<PathBuf>,
     /// What the scene may take.
     pub budget: Budget,
+    files: RefCell<HashSet<PathBuf>>,
     /// When it is shown, in seconds.
     pub time: f64,
 }
@@ -53,7 +56,8 @@ impl Document {
             .map_err(|e| SceneError::NotGltf { file: file.clone(), reason: e.to_string() })?;
         let budget = Budget::new(memory);
         budget.read(bytes.len());
-        let mut document = Self { file, root, places, buffers: Vec::new(), folder, budget, time: 0.0 };
+        let (buffers, files) = (Vec::new(), RefCell::default());
+        let mut document = Self { file, root, places, buffers, folder, budget, files, time: 0.0 };
         document.check_version_and_extensions()?;
         document.check_fields()?;
         // Read the buffers
@@ -187,7 +191,10 @@ impl Document {
             return Err(failed("a link leads outside of the scene's folder".into()));
         }
         let bytes = read_file(&path).map_err(|e| failed(e.to_string()))?;
-        self.budget.read(bytes.len());
+        // A file's bytes count once, however often it is read
+        if self.files.borrow_mut().insert(path) {
+            self.budget.read(bytes.len());
+        }
         Ok(bytes)
     }
 
@@ -252,6 +259,7 @@ impl Document {
             return Err(self.invalid(field, format!("has {} bytes, should have {expected}", bytes.len())));
         }
         bytes.truncate(expected as usize);
+        self.take(field, expected)?;
         Ok(bytes)
     }
 }

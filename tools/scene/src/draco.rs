@@ -120,6 +120,7 @@ fn attribute(
             format!("Draco has {} components, the accessor {components}", attribute.num_components());
         return Err(document.invalid(field, problem));
     }
+    document.take(field, 8 * (mesh.num_points() * components) as u64)?;
     // Whole numbers of up to 24 bits are exact in between
     let values = attribute.read_f32s(mesh.num_points(), components);
     let size = component.0.size();

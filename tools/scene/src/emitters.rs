@@ -184,6 +184,10 @@ impl Emitters {
         let said = source.node.shape.as_ref().filter(|said| Said::is_said(said));
         let said = said.map_or(Ok(Said::default()), Said::new);
         match said.and_then(|said| said.shape(light, source.node)) {
+            Ok(lights) if lights.len() > 1 && source.material.emission_texture.is_some() => {
+                messages.warn(source.place.as_str(), "a grid is before an image: left out");
+                return false;
+            }
             Ok(lights) => self.lights.extend(lights),
             Err(problem) => {
                 messages.warn(source.place.as_str(), format!("{problem}: left out"));

@@ -45,6 +45,11 @@ pub(crate) struct PlacedNode {
     pub links: u8,
 }
 
+/// As much of a name as is kept, since thousands may have it.
+pub(crate) fn cut(name: Option<&str>) -> Option<String> {
+    name.map(|name| name.chars().take(200).collect())
+}
+
 /// Every node of the file's default scene, parents first.
 pub(crate) fn place(document: &Document, messages: &mut Messages) -> Result<Vec<PlacedNode>, SceneError> {
     let roots = root_nodes(&document.root, messages);
@@ -85,7 +90,7 @@ pub(crate) fn place(document: &Document, messages: &mut Messages) -> Result<Vec<
         let once = PlacedNode {
             index,
             number: placed.len(),
-            name: node.name.clone(),
+            name: cut(node.name.as_deref()),
             world,
             mesh: node.mesh.map(|m| m.value()),
             skin: node.skin.map(|s| s.value()),

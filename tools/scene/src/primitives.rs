@@ -6,7 +6,7 @@ use crate::document::Document;
 use crate::error::SceneError;
 use crate::materials;
 use crate::messages::Messages;
-use crate::nodes::PlacedNode;
+use crate::nodes::{PlacedNode, cut};
 use crate::skins;
 use crate::tangents;
 use crate::uv_mapping::{Mappings, UvMapping};
@@ -109,7 +109,7 @@ fn read_mesh(
         let field = format!("{place}.primitives[{number}]");
         let attributes = Attributes { document, source, field: &field };
         if let Some(mode) = mode_of_triangles(&attributes, messages)? {
-            let mut primitive = read_primitive(&attributes, mode, mesh.name.clone(), messages)?;
+            let mut primitive = read_primitive(&attributes, mode, cut(mesh.name.as_deref()), messages)?;
             let weights = mesh.weights.iter().flatten();
             primitive.weights = weights.map(|weight| f64::from(*weight)).collect();
             primitives.push(primitive);

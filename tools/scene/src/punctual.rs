@@ -1,7 +1,7 @@
 //! `KHR_lights_punctual`: points, spots and suns, which have no area. Where a size is given they are small
 //! spheres and disks of the same intensity.
 
-use crate::area_lights::LUMENS_PER_WATT;
+use crate::area_lights::{LUMENS_PER_WATT, one, white};
 use crate::bounds::Bounds;
 use crate::document::Document;
 use crate::error::SceneError;
@@ -44,14 +44,6 @@ impl Default for Spot {
     fn default() -> Self {
         Self { inner_cone_angle: 0.0, outer_cone_angle: FRAC_PI_4 }
     }
-}
-
-fn white() -> [f32; 3] {
-    [1.0; 3]
-}
-
-fn one() -> f64 {
-    1.0
 }
 
 /// The sun's angular radius, in radians: half of 0.533 degrees.

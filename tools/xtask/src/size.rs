@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The most lines of code: Rust, GLSL, Python, C++ and shell, without the generated header.
-const MOST_LINES: usize = 129_700;
+const MOST_LINES: usize = 129_895;
 /// The most words of README.md and docs/, without tables that commands write.
 const MOST_WORDS: usize = 42_230;
 /// The most characters of a line of Rust, GLSL and Markdown.

@@ -39,7 +39,7 @@ pub fn density_truth(
 ) -> Truth {
     let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
     let image = light.image.as_ref().map(|image| image.in_frame(frame));
-    let Some(bounds) = light.bounds() else { return Truth::default() };
+    let Some(bounds) = light.limits() else { return Truth::default() };
     let region = match &image {
         None => Region::polygon(&vertices),
         Some(image) => image.region(&vertices, settings.max_evaluations / super::EVALUATIONS_PER_TEXEL),

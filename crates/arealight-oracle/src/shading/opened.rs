@@ -1,8 +1,10 @@
 //! Lights seen through openings.
 
 use super::RelativeLight;
+use super::profiled::normal_of;
 use crate::frame::SurfaceFrame;
 use crate::polygon::clip_by;
+use arealight::Profile;
 use glam::DVec3;
 
 impl RelativeLight {
@@ -21,6 +23,18 @@ impl RelativeLight {
             if normal.dot(out) > 0.0 { -normal } else { normal }
         };
         Some([(u, v), (-u, v), (v, u), (-v, u)].map(plane).to_vec())
+    }
+
+    /// As these, with the square about the cone that a profile ends at: cubature may miss a narrow one.
+    pub(super) fn limits(&self) -> Option<Vec<DVec3>> {
+        let mut bounds = self.bounds()?;
+        let end = self.profile.as_ref().map_or(0.0, Profile::end);
+        if let Some(normal) = normal_of(&self.vertices).filter(|_| end > 0.01) {
+            let foot = normal * normal.dot(self.vertices[0]).signum() * (end.powi(-2) - 1.0).sqrt();
+            let (u, v) = normal.any_orthonormal_pair();
+            bounds.extend([foot + u, foot - u, foot + v, foot - v]);
+        }
+        Some(bounds)
     }
 
     /// What is seen of the outline, in a surface's frame.

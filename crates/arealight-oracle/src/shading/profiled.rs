@@ -109,7 +109,7 @@ fn cosine_of(tangent: f64) -> f64 {
     (1.0 - tangent * tangent) / (1.0 + tangent * tangent)
 }
 
-fn normal_of(vertices: &[DVec3]) -> Option<DVec3> {
+pub(super) fn normal_of(vertices: &[DVec3]) -> Option<DVec3> {
     let anchor = *vertices.first()?;
     let pairs = vertices[1..].windows(2);
     pairs.map(|pair| (pair[0] - anchor).cross(pair[1] - anchor)).sum::<DVec3>().try_normalize()

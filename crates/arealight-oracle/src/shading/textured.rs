@@ -58,8 +58,8 @@ pub fn transformed_image_integral(
     if sum.is_finite() { sum * mirrored } else { DVec3::ZERO }
 }
 
-/// Halvings of each axis after which a piece is taken as it is.
-const DEPTH: u32 = 24;
+/// Halvings after which a piece is taken as it is, fifty of each axis.
+const DEPTH: u32 = 100;
 
 /// A piece is small if its diagonal is at most this share of its distance: the rule of four points then has
 /// an error of 1e-4 of the piece, and few pieces are that near.

@@ -21,7 +21,7 @@ fn texels_that_are_no_texture_are_refused() {
     assert!(Texture::new(0, 5, Vec::new()).is_err());
     assert!(Texture::new(usize::MAX, 2, vec![DVec3::ONE; 2]).is_err());
     let error = Texture::new(1, 2, vec![DVec3::ONE, DVec3::NAN]).unwrap_err();
-    assert!(matches!(error, BadTexture::NoLight { index: 1, .. }));
+    assert!(matches!(error, BadTexture::NotFinite { index: 1, .. }));
 }
 
 #[test]

@@ -31,15 +31,20 @@ fn image(light: &RelativeLight) -> &ShownImage {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn a_white_image_is_the_form_factor(star in star(1.5), inverse in matrix(), both: bool) {
+    fn a_white_image_is_the_form_factor(
+        star in star(1.5), inverse in matrix(), both: bool, closer in 0.0..6.0_f64,
+    ) {
         prop_assume!(star.relative_distance() > 1e-2);
+        let normal = LightShape::Polygon(star.vertices.clone()).area_vector().normalize_or(DVec3::Z);
+        let shift = normal * (normal.dot(star.vertices[0]) * (0.1_f64.powf(closer) - 1.0));
+        let vertices: Vec<DVec3> = star.vertices.iter().map(|vertex| *vertex + shift).collect();
         let white = Arc::new(Texture::from_fn(3, 5, |_, _| DVec3::new(1.0, 2.0, 4.0)));
-        let light = showing(&star.vertices, &white, DVec2::new(0.1, 0.2), DVec2::new(0.7, 0.8));
-        let found = transformed_image_integral(&inverse, &star.vertices, image(&light), both);
-        let visible = if both { above_horizon(&star.vertices) } else { star.vertices.clone() };
+        let light = showing(&vertices, &white, DVec2::new(0.1, 0.2), DVec2::new(0.7, 0.8));
+        let found = transformed_image_integral(&inverse, &vertices, image(&light), both);
+        let visible = if both { above_horizon(&vertices) } else { vertices.clone() };
         let expected = transformed_form_factor(&inverse, &visible);
         // The rule's error at pieces as large as are allowed
         let off = (found - expected * DVec3::new(1.0, 2.0, 4.0)).abs().max_element();

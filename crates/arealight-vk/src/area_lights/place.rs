@@ -108,7 +108,12 @@ impl Place {
         {
             self.tile_lists = Some(on_device(needed.usage, needed.size)?);
         }
-        if let Some(extent) = froxels.map(|froxels| froxels.map(|count| count.max(1)))
+        let (froxels, most) = (froxels.map(|of| of.map(|count| count.max(1))), context.limits.volume_side);
+        if froxels.into_iter().flatten().any(|count| count > most) {
+            let message = format!("must be at most {most} along each axis, as a volume of the device");
+            return Err(Error::InvalidArgument { field: "froxels", message });
+        }
+        if let Some(extent) = froxels
             && self.froxels.as_ref().is_none_or(|image| image.image.info.extent != extent)
         {
             // SAFETY: as above.

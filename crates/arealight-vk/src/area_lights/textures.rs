@@ -113,7 +113,9 @@ impl Textures {
                 unsafe { self.context.device.destroy_descriptor_pool(pool, None) };
             }
         }
-        if updates.is_empty() {
+        let mut wanted: Vec<_> = updates.iter().map(|(_, update)| *update).collect();
+        self.layers.check_updates(&wanted)?;
+        if wanted.is_empty() {
             return Ok(());
         }
         let layouts = vec![self.layers.source_set_layout(); updates.len()];
@@ -122,20 +124,12 @@ impl Textures {
         sources.pools.push(pool);
         // SAFETY: the same contract.
         unsafe {
-            for (set, (source, _)) in sets.iter().zip(updates) {
-                self.layers.write_source_set(*set, *source)?;
+            for ((set, (source, _)), update) in sets.into_iter().zip(updates).zip(&mut wanted) {
+                self.layers.write_source_set(set, *source)?;
+                update.source_set = set;
             }
-            let updates: Vec<_> = sets
-                .into_iter()
-                .zip(updates)
-                .map(|(source_set, (_, update))| TextureUpdate { source_set, ..*update })
-                .collect();
             self.clear_once(command_buffer);
-            let recorded = self.layers.record_update(command_buffer, &self.level_sets, &updates);
-            if recorded.is_err() {
-                self.settle(place, false);
-            }
-            recorded
+            self.layers.record_update(command_buffer, &self.level_sets, &wanted)
         }
     }
 }

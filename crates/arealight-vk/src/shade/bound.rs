@@ -1,8 +1,10 @@
 //! The descriptors of a frame's commands.
 
 use super::ShadeResources;
+use super::resources::needed;
 use crate::error::Error;
 use crate::layouts::Layouts;
+use arealight::LightSummary;
 use ash::vk;
 
 /// The descriptors of a frame: sets, or resources to push.
@@ -37,8 +39,12 @@ impl Bound<'_> {
         }
     }
 
-    /// The sets, of a pass that takes nothing else, checked.
-    pub(crate) fn sets(&self, layouts: &Layouts) -> Result<Vec<vk::DescriptorSet>, Error> {
+    /// The sets, of a pass that takes nothing else, checked: they have what the lights need.
+    pub(crate) fn sets(
+        &self,
+        layouts: &Layouts,
+        lights: LightSummary,
+    ) -> Result<Vec<vk::DescriptorSet>, Error> {
         layouts.check_host_set(self.host_set())?;
         let sets = match *self {
             Self::Set(set) => vec![set],
@@ -48,6 +54,7 @@ impl Bound<'_> {
                 return Err(Error::InvalidArgument { field: "resources", message });
             }
         };
+        layouts.check_present(sets[0], &needed(lights))?;
         layouts.check_set(sets[0])?;
         Ok(sets)
     }

@@ -124,8 +124,15 @@ impl ShadeResources {
             }
         }
         let all = bindings.iter().map(|binding| self.at(binding)).collect();
-        let absent = [LIGHT_TEXTURES, SHAPES].into_iter().filter(|name| self.bound_at(name).is_none());
-        Ok((all, absent.collect()))
+        Ok((all, self.absent(bindings)))
+    }
+
+    /// Of `bindings` those that some frames need, and that are missing.
+    pub(crate) fn absent(&self, bindings: &[Binding]) -> Vec<&'static str> {
+        let missing = |binding: &Binding| {
+            [LIGHT_TEXTURES, SHAPES].contains(&binding.name) && self.bound_at(binding.name).is_none()
+        };
+        bindings.iter().filter(|binding| missing(binding)).map(|binding| binding.name).collect()
     }
 
     /// Refuses a G-buffer without a plane that is read.

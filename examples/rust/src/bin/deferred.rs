@@ -21,7 +21,7 @@ fn main() -> arealight_examples::Result<()> {
     let host = Host::new(arealight_examples::host_options())?;
     let mut engine = Deferred::new(&host, wanted.size)?;
     for seconds in wanted.times() {
-        engine.frame(seconds, |_, _| Ok(Semaphores::default()))?;
+        engine.frame(seconds, |_| Ok(()), |(), _| Semaphores::default())?;
     }
     let path = wanted.path_or("deferred.png");
     engine.picture()?.save(&path)?;

@@ -318,18 +318,25 @@ float arealight_profile_mean(ArealightLocalShaped local, ArealightRingLobe lobe,
     return about * (range > 1e-3 ? (to.z - from.z) / range : 0.5 * (from.y + to.y));
 }
 
+// The solid angle over 2 pi of a cap that has a vector form factor.
+float arealight_cap(vec3 vector) {
+    return 1.0 - sqrt(max(1.0 - length(vector), 0.0));
+}
+
+// The vector form factor, and in w the solid angle over 2 pi, of what is seen: `whole` without the profile.
 // Error beyond the form factors': of the profile within a ring, where it is its mean.
-vec3 arealight_vector_form_factor(mat3 space, ArealightLocalShaped local) {
+vec4 arealight_sum_of_rings(mat3 space, ArealightLocalShaped local, float whole) {
     float front = AREALIGHT_HAS_TWO_SIDED ? local.polygon.side : 1.0;
     if (!AREALIGHT_HAS_PROFILES) {
-        return front * arealight_level_vector(space, local, AREALIGHT_NO_RIM, front);
+        return vec4(front * arealight_level_vector(space, local, AREALIGHT_NO_RIM, front), whole);
     }
     vec3 all = AREALIGHT_HAS_OPENINGS ? vec3(0.0)
         : arealight_outline_form_factor(space, local.polygon.center, local.polygon.to_frame,
                                         local.polygon.first, local.polygon.end, front);
+    float cap_of_all = max(arealight_cap(all), 1e-30);
     ArealightRingLobe lobe = arealight_ring_lobe(space);
-    vec3 sum = vec3(0.0);
-    vec3 within = vec3(0.0);
+    vec4 sum = vec4(0.0);
+    vec4 within = vec4(0.0);
     vec3 from = local.low;
     // The last ring ends where the light does
     for (uint row = local.levels; row <= local.levels_end; row++) {
@@ -353,19 +360,26 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalShaped local) {
         if (AREALIGHT_HAS_OPENINGS) {
             vector = arealight_level_vector(space, local, is_last ? AREALIGHT_NO_RIM : square, front);
         }
-        vec3 ring = vector - within;
+        float cap = arealight_cap(vector);
+        // What edges cut off of a cap, it has as all of the light does
+        cap *= AREALIGHT_HAS_OPENINGS ? 1.0 : mix(1.0, whole / cap_of_all, cap / cap_of_all);
+        vec4 outer = vec4(vector, is_last ? whole : min(cap, whole));
         float mean = 1.0;
         if (arealight_has_profile(local.profile)) {
-            mean = arealight_profile_mean(local, lobe, from, to, ring);
+            mean = arealight_profile_mean(local, lobe, from, to, outer.xyz - within.xyz);
         }
-        sum += mean * ring;
+        sum += mean * (outer - within);
         if (is_last) {
             break;
         }
-        within = vector;
+        within = outer;
         from = to;
     }
-    return front * sum;
+    return vec4(front * sum.xyz, sum.w);
+}
+
+vec3 arealight_vector_form_factor(mat3 space, ArealightLocalShaped local) {
+    return arealight_sum_of_rings(space, local, 0.0).xyz;
 }
 
 vec3 arealight_image_average(mat3 space, ArealightLocalShaped local, vec3 vector) {
@@ -402,19 +416,17 @@ float arealight_seen_solid_angle(ArealightLocalShaped local) {
     return arealight_fan_solid_angle(turn);
 }
 
-// Of what is seen, times the profile's mean there as a cosine about the light's center sees it.
+// Of what is seen, ring by ring times the profile's mean there: a ring's is that between caps that have the
+// vector form factors of what it is between, and the last one's what is left.
 float arealight_solid_angle(ArealightLocalShaped local) {
     bool is_clipped = AREALIGHT_HAS_OPENINGS && local.opening.is_between;
-    float mean = 1.0;
-    if (arealight_has_profile(local.profile)) {
-        vec3 center = local.polygon.center;
-        mat3 space = arealight_frame_matrix(arealight_surface_frame(center, center));
-        float front = AREALIGHT_HAS_TWO_SIDED ? local.polygon.side : 1.0;
-        vec3 all = is_clipped ? arealight_level_vector(space, local, AREALIGHT_NO_RIM, front)
-                              : arealight_vector_form_factor(space, local.polygon);
-        mean = min(length(arealight_vector_form_factor(space, local)) / max(length(all), 1e-30), 1.0);
+    float whole = is_clipped ? arealight_seen_solid_angle(local) : arealight_solid_angle(local.polygon);
+    if (!arealight_has_profile(local.profile)) {
+        return whole;
     }
-    return mean * (is_clipped ? arealight_seen_solid_angle(local) : arealight_solid_angle(local.polygon));
+    vec3 center = local.polygon.center;
+    mat3 space = arealight_frame_matrix(arealight_surface_frame(center, center));
+    return 2.0 * AREALIGHT_PI * arealight_sum_of_rings(space, local, whole / (2.0 * AREALIGHT_PI)).w;
 }
 #endif
 

@@ -103,6 +103,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if !(scale.is_finite() && *scale > 0.0) {
         return Err(Failure::Argument { argument: "--scale", message: format!("{scale} is not above 0") });
     }
+    if !exposure.is_finite() {
+        return Err(Failure::Argument {
+            argument: "--exposure",
+            message: format!("{exposure} is no number"),
+        });
+    }
     let mut images = Images::beside(Path::new(""), memory::most_of);
     let mut read = |path: &Path| images.read(path).map_err(|error| Failure::input(path, error));
     let (a, b) = (read(judged)?, read(truth)?);
@@ -129,7 +135,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         let value = json!({
             "rmse_over_mean": error, "mean_ratio": ratio, "largest": largest, "largest_at": [x, y],
             "mean": mean, "levels": levels, "levels_of_color": color,
-            "output": output,
+            "output": output.as_ref().map(|path| path.display().to_string()),
         });
         format!("{value:#}\n")
     } else {

@@ -57,7 +57,7 @@ fn to_json(arguments: &Arguments, required: &[RequiredEffect]) -> String {
         })
         .collect();
     let summary = json!({
-        "scene": arguments.scene,
+        "scene": arguments.scene.display().to_string(),
         "effects": effects,
         "required": required.iter().map(|one| one.effect.to_string()).collect::<Vec<_>>(),
     });

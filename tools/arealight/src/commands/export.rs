@@ -135,7 +135,7 @@ fn summary(arguments: &Arguments, files: &[File], plan: &Plan) -> String {
     if arguments.json {
         let paths: Vec<&str> = files.iter().map(|file| file.path.as_str()).collect();
         let summary = json!({
-            "folder": arguments.folder,
+            "folder": arguments.folder.display().to_string(),
             "files": paths,
             "bytes": bytes,
             "replaced": plan.foreign,

@@ -204,7 +204,7 @@ impl Summary<'_> {
     fn to_json(&self) -> String {
         let table = &self.file.table;
         let summary = json!({
-            "output": self.arguments.output,
+            "output": self.arguments.output.display().to_string(),
             "brdf": table.description().brdf,
             "made_by": table.description().made_by,
             "size": table.size(),

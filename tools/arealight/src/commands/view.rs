@@ -2,12 +2,12 @@
 
 use crate::canvas::Canvas;
 use crate::failure::Failure;
-use crate::gpu;
 use crate::lights::{LightArguments, scene_name};
 use crate::output::{self, print};
 use crate::picture::Exposure;
 use crate::progress;
 use crate::view::{Engines, Interface, Look, Mode, Script, Shown, State, Viewer, paint, show};
+use crate::{gpu, memory};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -105,8 +105,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 const FILM: &str = "film.gif";
 
 fn read_script(path: &Path) -> Result<Script, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|error| Failure::input(path, error))?;
-    Script::parse(&text).map_err(|error| Failure::input(path, error))
+    Script::parse(&memory::read_text(path)?).map_err(|error| Failure::input(path, error))
 }
 
 /// Draws a frame for each step of time, and writes them.
@@ -119,16 +118,15 @@ fn record(
     scene: &Path,
 ) -> Result<ExitCode, Failure> {
     let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
-    let step = 1.0 / f64::from(arguments.rate);
-    let count = (script.seconds() / step).ceil() as u32 + 1;
+    let rate = f64::from(arguments.rate);
+    let count = (script.seconds() * rate).ceil() as u32 + 1;
     let bar = progress::bar(u64::from(count), "frames");
     let mut interface = Interface::new(1.0);
     let (mut frames, mut said): (Vec<Canvas>, Vec<Value>) = (vec![], vec![]);
     for index in 0..count {
         // What is at time 0 comes before the first frame
-        let now = f64::from(index) * step;
-        let before = if index == 0 { -1.0 } else { now - step };
-        state.play(viewer.scene(), if index == 0 { 0.0 } else { step });
+        let [before, now] = [f64::from(index) - 1.0, f64::from(index)].map(|frame| frame / rate);
+        state.play(viewer.scene(), if index == 0 { 0.0 } else { 1.0 / rate });
         for event in script.between(before, now) {
             if !interface.takes(&event, arguments.size) {
                 state.apply(event, viewer.scene(), aspect);

@@ -48,7 +48,6 @@ pub fn answer(
 
 /// A case's light is relative to its shading point already.
 fn point(case: &SupportedCase, images: &mut Images) -> EvalPoint {
-    let shown = case.light.image.as_ref().zip(case.texture.as_ref());
     let mut light = Light {
         name: case.name.clone(),
         shape: LightShape::Polygon(case.light.vertices.clone()),
@@ -58,8 +57,9 @@ fn point(case: &SupportedCase, images: &mut Images) -> EvalPoint {
         opening: case.light.opening,
         ..Light::default()
     };
-    if let Some((image, texture)) = shown {
-        images.show(&mut light, &image.texture, texture.uv.clone());
+    if let Some(image) = &case.light.image {
+        let uvs = case.light.vertices.iter().map(|vertex| image.map.coordinate(*vertex)).collect();
+        images.show(&mut light, &image.texture, uvs);
     }
     EvalPoint { surface: case.surface, position: DVec3::ZERO, normal: case.normal, view: case.view, light }
 }
@@ -71,11 +71,20 @@ pub struct Images {
 }
 
 impl Images {
-    /// Lets a light show an image: its layer is its number among all.
-    pub fn show(&mut self, light: &mut Light, image: &Arc<Texture>, uvs: Vec<DVec2>) {
-        light.texture = Some(LightTexture { layer: 0, uvs });
+    /// Lets a light show an image, or its piece of it: its layer is its number among all.
+    pub fn show(&mut self, light: &mut Light, image: &Arc<Texture>, mut uvs: Vec<DVec2>) {
+        // Rounded, so that what is seen of all of it is all
+        let even = |uv: DVec2| (uv * 1048576.0).round() / 1048576.0;
+        let low = even(uvs.iter().copied().fold(DVec2::INFINITY, DVec2::min));
+        let high = even(uvs.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max));
         let divisor = TexturePart::divisor_of(image.brightest() as f32);
-        let mut part = TexturePart { divisor, ..TexturePart::default() }.shown_by(light);
+        let mut part = TexturePart { divisor, ..TexturePart::default() };
+        if low.min_element() >= 0.0 && high.max_element() <= 1.0 && (high - low).min_element() > 0.0 {
+            (part.low, part.size) = (low, high - low);
+            uvs = uvs.into_iter().map(|uv| (uv - low) / (high - low)).collect();
+        }
+        light.texture = Some(LightTexture { layer: 0, uvs });
+        part = part.shown_by(light);
         // To a 64th of an octave, so that many lights don't need many
         part.aspect = ((64.0 * part.aspect.log2()).round() / 64.0).exp2();
         let known = self.known.iter().position(|known| Arc::ptr_eq(&known.0, image) && known.1 == part);

@@ -33,8 +33,8 @@ impl Look {
     /// Reads one for a scene; refuses that of another one, and numbers that the viewer would not make.
     pub fn read(path: &Path, scene: &Scene) -> Result<Self, Failure> {
         let fail = |message: String| Failure::Input { path: path.to_owned(), message };
-        let bytes = std::fs::read(path).map_err(|error| Failure::input(path, error))?;
-        let look: Self = serde_json::from_slice(&bytes).map_err(|error| Failure::input(path, error))?;
+        let text = crate::memory::read_text(path)?;
+        let look: Self = serde_json::from_str(&text).map_err(|error| Failure::input(path, error))?;
         let [count, own] = [look.lamps.len(), scene.lamps.len()];
         if count != own {
             return Err(fail(format!("it is of {count} lamps, and the scene has {own}")));

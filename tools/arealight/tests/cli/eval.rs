@@ -441,6 +441,50 @@ fn an_image_keeps_its_range_whatever_the_other_images_are() {
     }
 }
 
+/// A case of a white diffuse surface that looks up.
+fn white(name: &str, light: &str) -> String {
+    format!(
+        r#"{{ "name": "{name}", "position": [0, 0, 0], "normal": [0, 0, 1], "view": [0, 0, 1],
+        "bsdf": "diffuse", "albedo": [1, 1, 1], "light": {{ {light} }} }}"#
+    )
+}
+
+#[test]
+fn narrow_beams_pieces_of_images_and_what_is_hidden_of_profiles_agree() {
+    let texel = |x: usize, y: usize| (1.0, (x * x + y) as f32, if x + y > 7 { 1.0 } else { 0.1 });
+    exr::prelude::write_rgb_file(temporary("piece.exr"), 8, 8, texel).unwrap();
+    let light = |more: &str| {
+        let corners = "[[-0.5, -0.5, 1], [-0.5, 0.5, 1], [0.5, 0.5, 1], [0.5, -0.5, 1]]";
+        format!(r#""type": "polygon", "radiance": [1, 1, 1], "vertices": {corners}, {more}"#)
+    };
+    let hidden = r#""occluders": [[[-0.4, -0.4, 0.5], [0.1, -0.4, 0.5], [0.1, 0.4, 0.5]]], "light""#;
+    let turned = r#""profile": [[0, 1, 0.2, 0.1, 0.2], [80, 1, 0.2, 0.1, 0.2]], "profile_levels": 8"#;
+    let piece = r#""texture": "piece.exr", "uv": [[0.3, 0.6], [0.3, 0.4], [0.6, 0.4], [0.6, 0.6]]"#;
+    let cases = [
+        white("beam", &light(r#""profile": [[0, 1], [1, 0]], "profile_levels": 8"#)),
+        white("piece", &light(piece)),
+        white("hidden image", &light(piece)).replace("\"light\"", hidden),
+        white("hidden profile", &light(turned)).replace("\"light\"", hidden),
+    ];
+    let file = write("pieces.json", &format!(r#"{{ "cases": [{}] }}"#, cases.join(",")));
+    let of = |method: &str| {
+        let found = answers(&[&file, "--on", method]);
+        found.iter().map(|answer| answer["radiance"][1].as_f64().unwrap()).collect::<Vec<_>>()
+    };
+    let known = of("truth");
+    // A factor of 1 - angle / end: end^2 / 3
+    assert!((known[0] / (1_f64.to_radians().powi(2) / 3.0) - 1.0).abs() < 2e-3, "{known:?}");
+    for method in methods(["oracle", "gpu"], |name| name) {
+        let off: Vec<f64> = of(method).iter().zip(&known).map(|(found, known)| found / known - 1.0).collect();
+        // The filter's error, of triangles with what is beside them; a pixel that looks by an outline's own
+        // first edge errs by half
+        assert!(
+            off.iter().zip([0.02, 0.02, 0.1, 0.1]).all(|(off, most)| off.abs() < most),
+            "{method}: {off:?}"
+        );
+    }
+}
+
 #[test]
 fn disks_have_their_profile_and_opening_and_images_their_profile() {
     exr::prelude::write_rgb_file(temporary("half.exr"), 2, 2, |x, y| (1.0, (x + y) as f32, 0.5)).unwrap();
@@ -449,21 +493,15 @@ fn disks_have_their_profile_and_opening_and_images_their_profile() {
     let disk = r#""type": "disk", "radiance": [1, 1, 1], "center": [0, 0, 1], "axis_u": [0, 0.5, 0],
         "axis_v": [0.5, 0, 0]"#;
     let opening = r#""opening": { "center": [0, 0, 0.5], "axis_u": [0.1, 0, 0], "axis_v": [0, 0.1, 0] }"#;
-    let case = |name: &str, light: &str| {
-        format!(
-            r#"{{ "name": "{name}", "position": [0, 0, 0], "normal": [0, 0, 1], "view": [0, 0, 1],
-            "bsdf": "diffuse", "albedo": [1, 1, 1], "light": {{ {light} }} }}"#
-        )
-    };
     let image = r#""type": "polygon", "radiance": [1, 1, 1], "texture": "half.exr",
         "vertices": [[-0.5, -0.5, 1], [-0.5, 0.5, 1], [0.5, 0.5, 1], [0.5, -0.5, 1]],
         "uv": [[0, 1], [0, 0], [1, 0], [1, 1]]"#;
     let cases = [
-        case("image", image),
-        case("half of it", &format!("{image}, {half}")),
-        case("whole", disk),
-        case("half", &format!("{disk}, {half}")),
-        case("through a window", &format!("{disk}, {opening}")),
+        white("image", image),
+        white("half of it", &format!("{image}, {half}")),
+        white("whole", disk),
+        white("half", &format!("{disk}, {half}")),
+        white("through a window", &format!("{disk}, {opening}")),
     ];
     let file = write("disks.json", &format!(r#"{{ "cases": [{}] }}"#, cases.join(",")));
     for method in methods(["oracle", "truth", "gpu"], |name| name) {

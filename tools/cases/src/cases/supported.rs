@@ -56,7 +56,6 @@ impl Case {
             normal: self.normal,
             view: self.view,
             light,
-            texture: texture.clone(),
             blockers: self.blockers.iter().map(|blocker| blocker.map(|v| v - self.position)).collect(),
         })
     }

@@ -143,7 +143,7 @@ fn a_textured_case_has_its_image_where_its_coordinates_say() {
     assert_eq!(shown.texture, image);
     // Relative to the shading point: the vertex at uv (0, 0.5) is the box's corner
     assert!((shown.map.corner - DVec3::new(0.0, 1.0, 1.0)).length() < 1e-12, "{:?}", shown.map);
-    assert_eq!(supported.texture.unwrap().uv[2], DVec2::new(1.0, 0.5));
+    assert!(shown.map.coordinate(supported.light.vertices[2]).abs_diff_eq(DVec2::new(1.0, 0.5), 1e-12));
     let bent = with("[[0, 0], [1, 0], [0.7, 0.7], [0, 1]]").unwrap_err().to_string();
     assert!(bent.starts_with("light.texture: uvs["), "{bent}");
 }
@@ -215,11 +215,13 @@ fn errors_name_the_case_and_the_field() {
     let two = r#""type": "polygon", "vertices": [[1, 2, 4], [2, 2, 4]]"#;
     let bent = r#""type": "polygon", "vertices": [[0, 0, 1], [1, 0, 1], [1, 1, 1.1], [0, 1, 1]]"#;
     let short_uv = format!(r#"{QUAD}, "texture": "t.exr", "uv": [[0, 0]]"#);
+    let levels = format!(r#"{QUAD}, "profile_levels": 2.7"#);
     let null = r#""type": "polygon", "vertices": [[1, 2, 4], [2, null, 4], [0, 0, 4]]"#;
     for (material, light, expected) in [
         (GGX, two, "light.vertices: 2 given, a polygon has at least 3"),
         (GGX, bent, "light.vertices["),
         (GGX, short_uv.as_str(), "light.uv: 1 given for 4 vertices"),
+        (GGX, levels.as_str(), "light.profile_levels: 2.7 must be a whole number"),
         (GGX, null, "light.vertices[1][1]: is null (some programs write NaN so), where a number should be"),
         (GGX, r#""type": "cube""#, "light.type: \"cube\" is not known"),
         (GGX, r#""type": "sphere", "center": [0, 0, 0], "radius": -1"#, "light.radius: -1 must be above 0"),

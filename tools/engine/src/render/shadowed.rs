@@ -234,12 +234,8 @@ impl SceneRenderer<'_> {
         views: &[ShadowedView],
         seed: u32,
     ) -> Result<Option<Duration>, EngineError> {
-        let mut total = Some(Duration::ZERO);
-        for view in views {
-            let took = self.shade_shadowed(view, seed)?;
-            total = total.zip(took).map(|(total, took)| total + took);
-        }
-        Ok(total)
+        let took: Result<Vec<_>, _> = views.iter().map(|view| self.shade_shadowed(view, seed)).collect();
+        Ok(took?.into_iter().sum())
     }
 
     /// What [`SHADOW_RAYS_MASKED`] reads.

@@ -157,7 +157,7 @@ mod tests {
             "diffuse,glossy,two_sided,specular_input,polygon,textured,ellipse,sphere,tube,mesh,textured_ellipse,coat,coat_normal,coupled,\
              coupled_by_albedo,coat_by_albedo,diffuse_roughness,sheen,anisotropy,multiple_scattering,transmission,\
              thin_film,glass,profile,opening,linked,azimuth",
-            432_000,
+            433_000,
         ),
     ];
 

@@ -3,9 +3,10 @@
 use crate::failure::Failure;
 use crate::picture::srgb_from_linear;
 use crate::plots::bytes_of;
-use crate::{gpu, lights};
+use crate::{gpu, lights, memory};
 use arealight::TexturePart;
 use arealight::pyramid::PyramidSize;
+use arealight_cases::images::Images;
 use arealight_engine::{Engine, EngineError, Of, SourceImage, SourceTexels};
 use arealight_scene::{LoadOptions, Scene};
 use glam::DVec3;
@@ -107,16 +108,11 @@ enum Texels {
 
 impl Loaded {
     fn exr(path: &Path) -> Result<Self, Failure> {
-        let image = exr::prelude::read_first_rgba_layer_from_file(
-            path,
-            |size, _| (size.width(), vec![[0.0; 4]; size.area()]),
-            |(width, texels), place, (r, g, b, a): (f32, f32, f32, f32)| {
-                texels[place.y() * *width + place.x()] = [r, g, b, a];
-            },
-        );
-        let layer = image.map_err(|error| Failure::input(path, error))?.layer_data;
-        let size = [layer.size.width(), layer.size.height()].map(|side| side as u32);
-        Self { size, texels: Texels::Linear(layer.channel_data.pixels.1) }.check(path)
+        let image = Images::beside(path, memory::most_of).read(path);
+        let image = image.map_err(|error| Failure::input(path, error))?;
+        let texels = image.texels().iter().map(|texel| texel.as_vec3().extend(1.0).to_array()).collect();
+        let size = [image.width(), image.height()].map(|side| side as u32);
+        Self { size, texels: Texels::Linear(texels) }.check(path)
     }
 
     fn encoded(path: &Path) -> Result<Self, Failure> {

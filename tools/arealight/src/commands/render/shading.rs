@@ -5,7 +5,7 @@ use super::bands::{Band, MOST_SAMPLES};
 use super::frames::Frame;
 use super::rounds::{MOST_ROUNDS, Rounds};
 use crate::edges::{self, Sight};
-use crate::picture::{AUTO_LUMINANCE, Exposure, MAX_STOPS, Picture};
+use crate::picture::{AUTO_LUMINANCE, Exposure, Format, MAX_STOPS, Picture};
 use crate::progress;
 use crate::shadows::Shadows;
 use arealight::plan::{MediumOptions, Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
@@ -212,7 +212,10 @@ pub fn render(
     };
     if edges::FACTORS.contains(&supersample) {
         let sight = Sight { scene: &buffers, camera, materials, factor: supersample };
-        sum.picture.edges = sight.edges(&sum.picture, sum.stops);
+        // Radiance, which is not shown, is the same at every exposure
+        let format = arguments.output.as_deref().map(Picture::check_format);
+        let stops = if matches!(format, Some(Ok(Format::Exr))) { 0.0 } else { sum.stops };
+        sum.picture.edges = sight.edges(&sum.picture, stops);
     }
     Ok(sum)
 }

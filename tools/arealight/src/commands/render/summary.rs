@@ -140,7 +140,7 @@ impl Summary<'_> {
             "fog_seconds": seconds(outcome.fog),
             "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },
             "seconds": phases.to_json(),
-            "picture": output,
+            "picture": output.display().to_string(),
             "frames": arguments.film.frames,
             "size": arguments.size,
             "exposure": outcome.stops,

@@ -15,7 +15,7 @@ const PAPER: Colour = [16, 18, 22];
 const INK: Colour = [230, 233, 238];
 
 /// Hundredths of a second that a frame is shown.
-const DELAY: u16 = 7;
+const DELAY: f64 = 7.0;
 
 /// Scenes with the lights where they are in each frame: `degrees` to either side about the vertical through
 /// the scene's middle, once to and fro.
