@@ -16,7 +16,7 @@ const TOLERANCE: f32 = 1e-4;
 fn of_rust_example(seconds: f64) -> Picture {
     let host = Host::new(host_options()).unwrap();
     let mut engine = Deferred::new(&host, SIZE).unwrap();
-    engine.frame(seconds, |_, _| Ok(Semaphores::default())).unwrap();
+    engine.frame(seconds, |_| Ok(()), |(), _| Semaphores::default()).unwrap();
     engine.picture().unwrap()
 }
 
