@@ -16,7 +16,7 @@ use crate::shadows::{ShadowFrame, ShadowOptions, ShadowPass, ShadowPassInfo};
 use crate::table_image::{TableFormat, TableImage};
 use crate::view::{check_whole, view_of};
 use arealight::plan::{MediumOptions, Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
-use arealight::{Blockers, Light, LightTable, PackedLights, PyramidSize};
+use arealight::{Blockers, Light, LightSummary, LightTable, PackedLights, PyramidSize};
 use ash::vk;
 use bytemuck::cast_slice;
 use glam::{DVec3, Vec3};
@@ -173,8 +173,9 @@ impl AreaLights {
             let mut image = TableImage::new(context, table, info.table_format)?;
             let memory = allocator.keep(image.allocate(&mut allocator.lock())?);
             let texels = mapped(context, &allocator, &image.bytes(table))?;
-            let horizons = info.tiles.map(|_| table.lobe_horizons(info.options.quality.specular_lobes));
-            let horizons = horizons.unwrap_or_default();
+            // Tiles alone read them, and they take half a second
+            let of_lobes = |_| table.lobe_horizons(info.options.quality.specular_lobes);
+            let horizons = info.tiles.map_or_else(Vec::new, of_lobes);
             let lobe_horizons = mapped(context, &allocator, cast_slice(&horizons))?;
             let textures = info.textures.map(|size| Textures::new(context, &allocator, size, frames));
             // From here on dropping it destroys what it has
@@ -235,13 +236,15 @@ impl AreaLights {
         &self.shade
     }
 
-    /// Makes the pipelines of frames with such lights and such a view, which [`AreaLights::shade`] would
-    /// otherwise do at the first.
+    /// Makes the pipelines of frames with such lights and such a view, before [`AreaLights::shade`] does.
     ///
     /// # Errors
     /// As [`AreaLights::shade`].
     pub fn prepare(&self, lights: &[Light], view: &ShadeFrame) -> Result<(), Error> {
-        let lights = PackedLights::new(lights, DVec3::ZERO)?.summary();
+        self.prepare_for(PackedLights::new(lights, DVec3::ZERO)?.summary(), view)
+    }
+
+    fn prepare_for(&self, lights: LightSummary, view: &ShadeFrame) -> Result<(), Error> {
         let any = Some(Resource::buffer(self.lobe_horizons.raw));
         self.shade.prepare(&ShadeFrame { lights, tile_lists: any, ..*view })?;
         self.shadow.iter().try_for_each(|shadow| shadow.prepare(lights))?;
@@ -376,6 +379,7 @@ impl AreaLights {
             return Err(Error::InvalidArgument { field: "origin", message });
         }
         let packed = PackedLights::new(lights, origin)?;
+        self.prepare_for(packed.summary(), view)?;
         let place = place_of(&mut self.places, place)?;
         let (context, allocator) = (&self.context, &self.allocator);
         // SAFETY: the frame before at this place is done, so nothing uses what it has.
@@ -403,13 +407,11 @@ impl AreaLights {
         };
         // SAFETY: as above; the resources are the host's, and ours.
         unsafe { self.shade.write_set(place.sets[0], &resources) }?;
-        self.shade.prepare(&frame)?;
         let shadows = match (&self.shadow, &self.blockers) {
             (Some(shadow), Some(blockers)) => {
                 let of_shadows = place.shadow_resources(g_buffer, blockers, self.history.as_ref());
                 // SAFETY: as above.
                 unsafe { shadow.write_set(place.sets[1], &resources, &of_shadows) }?;
-                shadow.prepare(frame.lights)?;
                 Some((shadow, of_shadows))
             }
             _ => None,
@@ -427,7 +429,6 @@ impl AreaLights {
             let seen = ShadeResources { radiance: g_buffer.radiance, ..resources };
             // SAFETY: as above.
             unsafe { medium.write_set(set, &seen, &place.medium_resources()) }?;
-            medium.prepare(lights)?;
             Ok::<_, Error>((medium, set, frame))
         });
         let medium = medium.transpose()?;

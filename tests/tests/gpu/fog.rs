@@ -133,7 +133,7 @@ fn profiles_are_those_of_the_angles_that_near_points_see() {
         let known: Vec<f64> = points.iter().map(twin).collect();
         let square: f64 = found(&engine, &points).iter().zip(&known).map(|(a, b)| (a - b).powi(2)).sum();
         let error = (60.0 * square).sqrt() / known.iter().sum::<f64>();
-        // A cosine's mean of the profile times the light's solid angle: .11 and more
+        // A cosine's mean of the profile times the light's solid angle: .24 and more
         assert!(error < 0.07, "{error}");
     }
 }

@@ -36,9 +36,7 @@ impl Images {
         }
         let image = self.read(&self.folder.join(path)).and_then(|image| {
             match image.texels().iter().position(|texel| texel.min_element() < 0.0) {
-                Some(index) => {
-                    Err(format!("texels[{index}]: {} must not be negative", image.texels()[index]))
-                }
+                Some(at) => Err(format!("texels[{at}]: {} must not be negative", image.texels()[at])),
                 None => Ok(Arc::new(image)),
             }
         });

@@ -153,13 +153,11 @@ fn read_material(
         specular_texture: reader.texture(specular.specular_texture.as_ref(), false)?,
         specular_color_texture: reader.texture(specular.specular_color_texture.as_ref(), true)?,
         emission_texture: reader.texture(source.emissive_texture.as_ref(), true)?,
-        normal_texture: normal.map(|info| reader.textures.texture(info.index.value(), false)).transpose()?,
+        normal_texture: reader.normal_texture(normal)?,
         normal_scale: normal_scale(normal),
         coat_texture: reader.texture(coat.clearcoat_texture.as_ref(), false)?,
         coat_roughness_texture: reader.texture(coat.clearcoat_roughness_texture.as_ref(), false)?,
-        coat_normal_texture: coat_normal
-            .map(|info| reader.textures.texture(info.index.value(), false))
-            .transpose()?,
+        coat_normal_texture: reader.normal_texture(coat_normal)?,
         coat_normal_scale: normal_scale(coat_normal),
         sheen_color_texture: reader.texture(sheen.sheen_color_texture.as_ref(), true)?,
         sheen_roughness_texture: reader.texture(sheen.sheen_roughness_texture.as_ref(), false)?,
@@ -319,6 +317,13 @@ impl Reader<'_, '_> {
 
     fn texture(&mut self, info: Option<&json::texture::Info>, srgb: bool) -> Result<Option<u32>, SceneError> {
         info.map(|info| self.textures.texture(info.index.value(), srgb)).transpose()
+    }
+
+    fn normal_texture(
+        &mut self,
+        info: Option<&json::material::NormalTexture>,
+    ) -> Result<Option<u32>, SceneError> {
+        info.map(|info| self.textures.texture(info.index.value(), false)).transpose()
     }
 
     fn warn_of_mappings(&mut self, source: &json::Material) {
