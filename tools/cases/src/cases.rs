@@ -235,7 +235,7 @@ pub fn read_cases(text: &str) -> Result<Vec<Case>, CaseError> {
 
 fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError> {
     let fields = Fields::of_case(index, value)?;
-    let light_fields = fields.object("light")?;
+    let (light, unknown_of_light) = read_light(&fields.object("light")?)?;
     let material = CaseMaterial::read(&fields)?;
     let view = fields.direction("view")?;
     let case = Case {
@@ -248,16 +248,17 @@ fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError>
         tangent: fields.optional("tangent", Fields::direction)?,
         view,
         material,
-        light: read_light(&light_fields)?,
+        light,
         blockers: fields
             .optional("occluders", |f, field| f.list(field, Fields::triangle_at))?
             .unwrap_or_default(),
-        unknown_fields: [fields.unread(), light_fields.unread()].concat(),
+        unknown_fields: [fields.unread(), unknown_of_light].concat(),
     };
     Ok(case)
 }
 
-fn read_light(fields: &Fields) -> Result<CaseLight, CaseError> {
+/// A light, and the fields of it that are not known.
+fn read_light(fields: &Fields) -> Result<(CaseLight, Vec<String>), CaseError> {
     let radiance = fields.color("radiance", f64::INFINITY)?;
     let two_sided = fields.optional("two_sided", Fields::boolean)?.unwrap_or(false);
     let shape = match fields.text("type")? {
@@ -281,19 +282,24 @@ fn read_light(fields: &Fields) -> Result<CaseLight, CaseError> {
             return Err(fields.error("type", &message));
         }
     };
-    let opening = fields.has("opening").then(|| read_opening(fields)).transpose()?;
-    Ok(CaseLight { radiance, two_sided, profile: read_profile(fields)?, opening, shape })
+    let opening = fields.has("opening").then(|| fields.object("opening")).transpose()?;
+    let light = CaseLight {
+        radiance,
+        two_sided,
+        profile: read_profile(fields)?,
+        opening: opening.as_ref().map(read_opening).transpose()?,
+        shape,
+    };
+    Ok((light, [fields.unread(), opening.map_or_else(Vec::new, |it| it.unread())].concat()))
 }
 
-fn read_opening(light: &Fields) -> Result<Opening, CaseError> {
-    let fields = light.object("opening")?;
-    let opening = Opening {
+fn read_opening(fields: &Fields) -> Result<Opening, CaseError> {
+    Ok(Opening {
         center: fields.vector("center")?,
         axis_u: fields.direction("axis_u")?,
         axis_v: fields.direction("axis_v")?,
         housed: fields.optional("housed", Fields::boolean)?.unwrap_or(false),
-    };
-    fields.unread().first().map_or(Ok(opening), |unknown| Err(light.error("opening", unknown)))
+    })
 }
 
 /// Levels of a profile where a case says nothing of them.

@@ -129,7 +129,7 @@ fn read(mut document: Document, name: String, options: LoadOptions) -> Result<Sc
         cameras,
         fog,
         bounds,
-        warnings,
-        notes,
+        warnings: warnings.into_iter().collect(),
+        notes: notes.into_iter().collect(),
     })
 }

@@ -1,7 +1,9 @@
 //! What is said of a file while a scene is made of it.
 
+use indexmap::{IndexMap, IndexSet};
+
 /// Something in the file that is not shown word for word.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Warning {
     /// The mesh, material, node or extension.
     pub place: String,
@@ -18,18 +20,15 @@ impl std::fmt::Display for Warning {
 impl Warning {
     /// One line for each text, with the place where it came first and how many more there are.
     pub fn grouped(warnings: &[Self]) -> Vec<String> {
-        let mut kinds: Vec<(&Self, usize)> = Vec::new();
+        let mut kinds: IndexMap<&str, (&Self, usize)> = IndexMap::new();
         for warning in warnings {
-            match kinds.iter_mut().find(|(first, _)| first.text == warning.text) {
-                Some((_, count)) => *count += 1,
-                None => kinds.push((warning, 1)),
-            }
+            kinds.entry(&warning.text).or_insert((warning, 0)).1 += 1;
         }
         let line = |(first, count): (&Self, usize)| match count {
             1 => first.to_string(),
             more => format!("{} and {} more: {}", first.place, more - 1, first.text),
         };
-        kinds.into_iter().map(line).collect()
+        kinds.into_values().map(line).collect()
     }
 }
 
@@ -37,26 +36,19 @@ impl Warning {
 #[derive(Debug, Default)]
 pub(crate) struct Messages {
     /// [`crate::Scene::warnings`].
-    pub warnings: Vec<Warning>,
+    pub warnings: IndexSet<Warning>,
     /// [`crate::Scene::notes`].
-    pub notes: Vec<Warning>,
+    pub notes: IndexSet<Warning>,
 }
 
 impl Messages {
     /// Notes what is not shown as the file says.
     pub fn warn(&mut self, place: impl Into<String>, text: impl Into<String>) {
-        say(&mut self.warnings, place.into(), text.into());
+        self.warnings.insert(Warning { place: place.into(), text: text.into() });
     }
 
     /// Notes what is shown as the file means, though not word for word.
     pub fn note(&mut self, place: impl Into<String>, text: impl Into<String>) {
-        say(&mut self.notes, place.into(), text.into());
-    }
-}
-
-fn say(said: &mut Vec<Warning>, place: String, text: String) {
-    let message = Warning { place, text };
-    if !said.contains(&message) {
-        said.push(message);
+        self.notes.insert(Warning { place: place.into(), text: text.into() });
     }
 }

@@ -74,6 +74,34 @@ impl Primitive {
         }
         (positions, normals)
     }
+
+    /// Leaves out the vertices that no triangle has, for many primitives may share their accessors; returns
+    /// how many those were.
+    fn drop_unused(&mut self) -> usize {
+        let mut used = vec![false; self.positions.len()];
+        self.triangles.iter().flatten().for_each(|index| used[*index as usize] = true);
+        keep(&mut self.positions, &used);
+        keep(&mut self.normals, &used);
+        keep(&mut self.uvs, &used);
+        keep(&mut self.colors, &used);
+        self.light_uvs.iter_mut().for_each(|uvs| keep(uvs, &used));
+        self.influences.iter_mut().for_each(|influences| keep(influences, &used));
+        for target in &mut self.targets {
+            keep(&mut target.positions, &used);
+            keep(&mut target.normals, &used);
+        }
+        let place = |next: &mut u32, used: &bool| Some(std::mem::replace(next, *next + u32::from(*used)));
+        let places: Vec<u32> = used.iter().scan(0, place).collect();
+        self.triangles.iter_mut().flatten().for_each(|index| *index = places[*index as usize]);
+        used.len() - self.positions.len()
+    }
+}
+
+/// Of as many as vertices, or of none, those that are used.
+fn keep<T>(values: &mut Vec<T>, used: &[bool]) {
+    let mut used = used.iter();
+    values.retain(|_| used.next() == Some(&true));
+    values.shrink_to_fit();
 }
 
 /// The primitives of each of the file's meshes; those of meshes that no node has are not read.
@@ -140,6 +168,7 @@ fn read_primitive(
     messages: &mut Messages,
 ) -> Result<Primitive, SceneError> {
     let &Attributes { document, source, field } = attributes;
+    let left = document.budget.left();
     // Vertices
     let positions = attributes.read::<3>(&Semantic::Positions)?;
     let positions = positions.ok_or_else(|| document.invalid(field, "has no POSITION"))?;
@@ -163,6 +192,8 @@ fn read_primitive(
     let [uvs, light_uvs] =
         [Some(uvs), light_uvs].map(|uvs| Some(uvs?.unwrap_or_else(|| vec![Vec2::ZERO; count])));
     let uvs = uvs.unwrap_or_default();
+    let targets = targets(attributes, count)?;
+    let of_vertices = left - document.budget.left();
     // Corners, three a triangle, and their tangents
     let triangles = triangles(attributes, mode, count, messages)?;
     let mut tangents = None;
@@ -172,7 +203,7 @@ fn read_primitive(
             tangents::Vertices { positions: &positions, normals: &normals, uvs, triangles: &triangles };
         tangents = tangents::read(attributes, &vertices)?;
     }
-    Ok(Primitive {
+    let mut primitive = Primitive {
         field: field.to_owned(),
         mesh_name,
         material,
@@ -185,11 +216,14 @@ fn read_primitive(
         light_uvs,
         colors,
         influences,
-        targets: targets(attributes, count)?,
+        targets,
         weights: vec![],
         triangles,
         tangents: tangents.unwrap_or_default(),
-    })
+    };
+    let unused = primitive.drop_unused() as u64;
+    document.budget.give(of_vertices / (count as u64).max(1) * unused);
+    Ok(primitive)
 }
 
 /// What a primitive may be morphed to.

@@ -151,9 +151,10 @@ pub fn edit(scene: &mut Scene, edits: &[Edit]) {
         let mut bright: Option<(u32, u32)> = None;
         for triangle in scene.triangles.get_mut(lamp.triangles.clone()).into_iter().flatten() {
             triangle.positions = triangle.positions.map(|place| transform.transform_point3(place));
-            triangle.normals = triangle
-                .normals
-                .map(|normal| transform.transform_vector3(normal.as_dvec3()).normalize_or_zero().as_vec3());
+            let turned =
+                |it: Vec3| transform.transform_vector3(it.as_dvec3()).normalize_or_zero().as_vec3();
+            triangle.normals = triangle.normals.map(turned);
+            triangle.tangents = triangle.tangents.map(|it| turned(it.truncate()).extend(it.w));
             // What it looks like is its material's, which others may have too
             let (_, own) = bright.filter(|(of, _)| *of == triangle.material).unwrap_or_else(|| {
                 let mut material = scene.materials[triangle.material as usize].clone();

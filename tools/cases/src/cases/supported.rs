@@ -3,8 +3,8 @@
 use super::{
     Case, CaseLight, CaseMaterial, CaseShape, CaseTexture, MediumCase, ShapeCase, SupportedCase, Unsupported,
 };
-use arealight::{Light, LightFault, LightShape, LightTexture, TextureMap, TubeEnds};
-use arealight_oracle::shading::{RelativeLight, ShownImage};
+use arealight::{Light, LightFault, LightShape, LightTexture, TubeEnds};
+use arealight_oracle::shading::RelativeLight;
 use arealight_oracle::texture::Texture;
 use glam::{DAffine3, DVec3};
 use std::borrow::Cow;
@@ -22,40 +22,24 @@ impl Case {
     /// [`Unsupported`] with the reason, in words.
     pub fn supported(
         &self,
-        mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
+        load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
     ) -> Result<SupportedCase, Unsupported> {
-        let unsupported = |reason: String| Err(Unsupported { reason });
-        self.check_fields()?;
-        let (vertices, texture) = match &self.light.shape {
-            CaseShape::Polygon { vertices, texture } => (vertices, texture),
-            shape => return unsupported(format!("light.type \"{}\" is no polygon", shape.name())),
-        };
-        let surface = self.material.surface(self.tangent)?;
-        let mut light = RelativeLight {
-            vertices: vertices.iter().map(|v| *v - self.position).collect(),
-            radiance: self.light.radiance,
-            two_sided: self.light.two_sided,
-            image: None,
-            profile: self.light.profile.clone(),
-            azimuth: LightShape::Polygon(vertices.clone()).first_edge(),
-            opening: self.light.opening.map(|it| it.moved(&DAffine3::from_translation(-self.position))),
-        };
-        if let Some(texture) = texture {
-            let image = match load(&texture.path) {
-                Ok(image) => image,
-                Err(reason) => return unsupported(format!("light.texture: {}: {reason}", texture.path)),
-            };
-            match texture.map(&light.vertices) {
-                Ok(map) => light.image = Some(ShownImage { texture: image, map }),
-                Err(reason) => return unsupported(format!("light.{reason}")),
-            }
+        let shape = &self.light.shape;
+        if !matches!(shape, CaseShape::Polygon { .. }) {
+            let reason = format!("light.type \"{}\" is no polygon", shape.name());
+            return Err(Unsupported { reason });
         }
+        let (light, image) = self.relative_light(load)?;
+        let relative = match image {
+            Some(image) => RelativeLight::textured(&light, DVec3::ZERO, image).map_err(of_light)?,
+            None => RelativeLight::new(&light, DVec3::ZERO),
+        };
         Ok(SupportedCase {
             name: self.name.clone(),
-            surface,
+            surface: self.material.surface(self.tangent)?,
             normal: self.normal,
             view: self.view,
-            light,
+            light: RelativeLight { radiance: self.light.radiance, ..relative },
             blockers: self.blockers.iter().map(|blocker| blocker.map(|v| v - self.position)).collect(),
         })
     }
@@ -112,15 +96,25 @@ impl Case {
         Cow::Owned(Self { light: CaseLight { shape, ..self.light.clone() }, ..self.clone() })
     }
 
-    /// The light relative to the point, with its image.
+    /// As [`Case::relative_light`], which nothing blocks.
     fn unblocked_light(
         &self,
-        mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
+        load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
     ) -> Result<(Light, Option<Arc<Texture>>), Unsupported> {
-        self.check_fields()?;
         if !self.blockers.is_empty() {
             let reason = "occluders: before a light that is no polygon, or in a medium".into();
             return Err(Unsupported { reason });
+        }
+        self.relative_light(load)
+    }
+
+    /// The light relative to the point, with its image.
+    fn relative_light(
+        &self,
+        mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
+    ) -> Result<(Light, Option<Arc<Texture>>), Unsupported> {
+        if let Some(field) = self.unknown_fields.first() {
+            return Err(Unsupported { reason: format!("the field {field}") });
         }
         let shape = match &self.light.shape {
             CaseShape::Polygon { vertices, .. } => LightShape::Polygon(vertices.clone()),
@@ -155,21 +149,11 @@ impl Case {
             ..Light::default()
         };
         let light = light.moved(&DAffine3::from_translation(-self.position));
-        light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;
+        light.validate().map_err(of_light)?;
         Ok((light, image))
-    }
-
-    fn check_fields(&self) -> Result<(), Unsupported> {
-        match self.unknown_fields.first() {
-            Some(field) => Err(Unsupported { reason: format!("the field {field}") }),
-            None => Ok(()),
-        }
     }
 }
 
-impl CaseTexture {
-    /// Where the image is on a polygon.
-    fn map(&self, vertices: &[DVec3]) -> Result<TextureMap, LightFault> {
-        LightTexture { layer: 0, uvs: self.uv.clone() }.map(&LightShape::Polygon(vertices.to_vec()))
-    }
+fn of_light(fault: LightFault) -> Unsupported {
+    Unsupported { reason: format!("light.{fault}") }
 }

@@ -127,7 +127,7 @@ fn other_lights_become_shapes_relative_to_the_point() {
     // What is wrong
     assert_eq!(shape_reason(QUAD), "the light is a polygon");
     let flat = r#""type": "disk", "center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [2, 0, 0]"#;
-    assert!(shape_reason(flat).starts_with("axis_u and axis_v: "));
+    assert!(shape_reason(flat).starts_with("light.axis_u and axis_v: "));
 }
 
 #[test]
@@ -144,6 +144,10 @@ fn a_textured_case_has_its_image_where_its_coordinates_say() {
     // Relative to the shading point: the vertex at uv (0, 0.5) is the box's corner
     assert!((shown.map.corner - DVec3::new(0.0, 1.0, 1.0)).length() < 1e-12, "{:?}", shown.map);
     assert!(shown.map.coordinate(supported.light.vertices[2]).abs_diff_eq(DVec2::new(1.0, 0.5), 1e-12));
+    // A light that straddles what it is seen through has no answer on any path
+    let window = r#""opening": {"center": [1.5, 2.5, 4], "axis_u": [1, 0, 0], "axis_v": [0, 0, 1]}"#;
+    let straddled = reason(GGX, &format!("{QUAD}, {window}"));
+    assert!(straddled.starts_with("light.opening: "), "{straddled}");
     let bent = with("[[0, 0], [1, 0], [0.7, 0.7], [0, 1]]").unwrap_err().to_string();
     assert!(bent.starts_with("light.texture: uvs["), "{bent}");
 }
@@ -183,6 +187,12 @@ fn an_unknown_field_is_never_ignored() {
     assert_eq!(
         reason(GGX, &format!(r#"{QUAD}, "two_sidde": true"#)),
         "the field \"light.two_sidde\" is not known: \"two_sided\"?"
+    );
+    let window =
+        r#""opening": {"center": [1, 2, 3.5], "axis_u": [1, 0, 0], "axis_v": [0, 1, 0], "hosued": true}"#;
+    assert_eq!(
+        reason(GGX, &format!("{QUAD}, {window}")),
+        "the field \"light.opening.hosued\" is not known: \"housed\"?"
     );
     // A field of another kind of case is unknown too
     assert_eq!(

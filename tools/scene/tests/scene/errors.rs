@@ -306,6 +306,33 @@ fn of_nodes(count: usize) -> Vec<u8> {
     writer.glb()
 }
 
+/// A sphere in as many primitives as may be, which share its vertices.
+fn of_parts(most: usize) -> Vec<u8> {
+    let mut writer = emitter_with(&crate::shapes::sphere(1.0, 64, 64), json!({}));
+    let sphere = crate::shapes::sphere(1.0, 64, 64);
+    let whole = writer.root["meshes"][0]["primitives"][0].clone();
+    let part = |corners: &[u32]| {
+        let mut part = whole.clone();
+        part["indices"] = json!(writer.indices(corners));
+        part
+    };
+    let parts: Vec<Value> =
+        sphere.indices.chunks(3 * (sphere.indices.len() / 3).div_ceil(most)).map(part).collect();
+    writer.root["meshes"][0]["primitives"] = parts.into();
+    writer.glb()
+}
+
+#[test]
+fn primitives_that_share_vertices_take_those_that_they_use() {
+    let load = |parts| {
+        let options = LoadOptions { memory: Some(8 << 20), ..LoadOptions::default() };
+        Scene::from_bytes_with(&of_parts(parts), "parts", options).unwrap()
+    };
+    let (whole, parts) = (load(1), load(100));
+    assert_eq!(whole.triangles.len(), 8064);
+    assert!(whole.triangles == parts.triangles);
+}
+
 #[test]
 fn memory_follows_the_file() {
     const SMALL: Option<u64> = Some(8 << 20);
