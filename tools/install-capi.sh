@@ -25,7 +25,7 @@ cargo build --manifest-path "$root/Cargo.toml" --locked --quiet "${options[@]}" 
 built="${CARGO_TARGET_DIR:-$root/target}/$profile"
 abi="$(sed -n 's/^#define AREALIGHT_ABI_VERSION \([0-9]*\)$/\1/p' "$crate/include/arealight.h")"
 version="$(sed -n '/^\[workspace.package\]/,/^\[/s/^version = "\(.*\)"/\1/p' "$root/Cargo.toml")"
-fill() { sed -e "s|@PREFIX@|$prefix|" -e "s|@VERSION@|$version|" -e "s|@ABI@|$abi|"; }
+fill() { sed -e "s|@PREFIX@|$(sed 's/[&|\\]/\\&/g' <<<"$prefix")|" -e "s|@VERSION@|$version|" -e "s|@ABI@|$abi|"; }
 
 install -Dm644 -t "$prefix/include" "$crate/include/arealight.h"
 install -Dm644 -t "$prefix/lib" "$built/libarealight_capi.a"
@@ -48,6 +48,6 @@ fill <"$crate/cmake/arealight-config-version.cmake.in" >"$prefix/lib/cmake/areal
 fill <"$crate/cmake/arealight-config.cmake.in" >"$prefix/lib/cmake/arealight/arealight-config.cmake"
 echo "installed arealight $version to $prefix"
 # The loader looks into a list of its own, which root can renew
-if ! { [[ "$(id -u)" == 0 ]] && ldconfig 2>/dev/null && ldconfig -p | grep -qF "$prefix/lib/"; }; then
+if ! { [[ "$(id -u)" == 0 ]] && ldconfig 2>/dev/null && ldconfig -p | grep -F "$prefix/lib/" >/dev/null; }; then
     echo "programs find the shared library with LD_LIBRARY_PATH=$prefix/lib, or after ldconfig where the loader looks there"
 fi

@@ -17,11 +17,11 @@ check env RUSTFLAGS="$counters" cargo build --release --locked --quiet --manifes
 for seed_folder in fuzz/seeds/*; do
     name="$(basename "$seed_folder")"
     mkdir -p "fuzz/corpus/$name"
-    check "$folder/$target/release/$name" "fuzz/corpus/$name" "$seed_folder" -max_len=20000 -malloc_limit_mb=2200 \
+    check "$folder/$target/release/$name" "fuzz/corpus/$name" "$seed_folder" -artifact_prefix="fuzz/corpus/$name/" -max_len=20000 -malloc_limit_mb=2200 \
         -max_total_time=$((60 * minutes)) -verbosity=0 -print_final_stats=1
 done
 
-SHADERC_LIB_DIR="$(tools/shaderc.sh)" || exit 1
+SHADERC_LIB_DIR="$(tools/shaderc.sh)" || failed+=(tools/shaderc.sh)
 export SHADERC_LIB_DIR
 check cargo build --release --locked --quiet -p arealight-cli
 for ((seed = 1; seed <= seeds; seed++)); do

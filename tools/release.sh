@@ -19,7 +19,7 @@ usage() {
 }
 
 [[ $# -ge 1 && "$1" != -* ]] || usage
-out="$1"
+out="$(realpath -m "$1")"
 shift
 wheel=true publish=false debug=false
 for option in "$@"; do

@@ -268,12 +268,21 @@ DIFFERENCES = LinearSegmentedColormap.from_list(
     "differences", ["#2166ac", "#67a9cf", "#d1e5f0", "#f7f7f7", "#fddbc7", "#ef8a62", "#b2182b"])
 
 
+def plain(text):
+    """A text as it is: foreign names hold no formulas."""
+    return text.replace("$", r"\$")
+
+
+def entitle(made, title):
+    made.suptitle(plain(title), x=0.01, ha="left", fontsize=13)
+
+
 def lobes(found):
     """Fitted lobes beside true ones on the hemisphere from above, as figure 8 of Heitz et al. 2016."""
     columns, rows, pixels = len(found["roughness"]), len(found["view"]), found["pixels"]
     made, cells = figure(1480, 110 + 124 * rows, columns=3 * columns, rows=rows)
     made.get_layout_engine().set(rect=(0, 0.08, 1, 0.92))
-    made.suptitle(found["title"], x=0.01, ha="left", fontsize=13)
+    entitle(made, found["title"])
     for row, axes_of_row in enumerate(cells):
         for column in range(columns):
             cell = found["cells"][row * columns + column]
@@ -304,7 +313,7 @@ def lobes(found):
 
 def table_axes(axes, title, view=True):
     """Roughness to the right, the view's angle upwards."""
-    axes.set_title(title, loc="left")
+    axes.set_title(plain(title), loc="left")
     axes.grid(False)
     axes.set_xlabel("roughness")
     if view:
@@ -316,7 +325,7 @@ def errors(found):
     size, maps = found["cells_a_side"], found["maps"]
     columns = -(-len(maps) // 2)
     made, cells = figure(320 * max(columns, 3), 760, columns=max(columns, 3), rows=2)
-    made.suptitle(found["title"], x=0.01, ha="left", fontsize=13)
+    entitle(made, found["title"])
     image = None
     for index, axes in enumerate(cells.T.flat):
         if index >= len(maps):
@@ -337,7 +346,7 @@ def entries(found):
     """The numbers that a table holds: how smooth they are, for between nodes they are interpolated."""
     size, channels = found["size"], found["channels"]
     made, cells = figure(1400, 60 + 330 * -(-len(channels) // 4), columns=4, rows=-(-len(channels) // 4))
-    made.suptitle(found["title"], x=0.01, ha="left", fontsize=13)
+    entitle(made, found["title"])
     views = np.arange(0, 91, 15)
     for axes, channel in zip(cells.flat, channels):
         table_axes(axes, f"{channel['layer']} {channel['channel']}\nlargest step {channel['step']:.3f}",
@@ -364,7 +373,7 @@ def pyramid(found):
     rows = -(-len(levels) // 3)
     height = int(320 * found["size"][1] / found["size"][0]) + 50
     made, cells = figure(1050, 60 + rows * height, columns=3, rows=rows, squeeze=False)
-    made.suptitle(found["title"], x=0.01, ha="left", fontsize=13)
+    entitle(made, found["title"])
     for index, axes in enumerate(cells.flat):
         axes.set_axis_off()
         if index < len(levels):

@@ -33,6 +33,11 @@ fn dithered(frame: &Canvas, dither: i32) -> Vec<u8> {
     raised.collect()
 }
 
+/// Whether a .gif is of more than 2 GiB of pictures, which are all kept until the last, twice.
+pub fn is_too_large(size: [u32; 2], count: u32) -> bool {
+    size.map(u64::from).iter().product::<u64>() * 8 * u64::from(count) > 1 << 31
+}
+
 /// Writes pictures of one size, so many a second, with the most colours that there are.
 pub fn save(path: &Path, frames: &[Canvas], rate: u32) -> Result<(), Failure> {
     let film = encode(frames, 100.0 / f64::from(rate.max(1)), Palette { colors: 255, dither: 6 });

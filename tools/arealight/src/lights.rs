@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::memory;
+use crate::output::keep;
 use crate::view::Look;
 use arealight_scene::{Camera, LoadOptions, Scene};
 use std::path::{Path, PathBuf};
@@ -95,7 +96,9 @@ impl LightArguments {
 /// Reads a scene, with what the file leaves open; as much as there is memory for.
 pub fn read(path: &Path, options: LoadOptions) -> Result<Scene, Failure> {
     let options = LoadOptions { memory: memory::limit(), ..options };
-    Scene::load_with(path, options).map_err(|error| Failure::Scene(error.to_string()))
+    let scene = Scene::load_with(path, options).map_err(|error| Failure::Scene(error.to_string()))?;
+    scene.files.iter().map(PathBuf::as_path).chain([path]).for_each(keep);
+    Ok(scene)
 }
 
 /// What a scene is called that may be the demo.

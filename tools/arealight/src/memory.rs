@@ -47,6 +47,7 @@ pub fn read_text(path: &Path) -> Result<String, Failure> {
         if output::is_stream(path) {
             return within(io::stdin().lock());
         }
+        output::keep(path);
         let file = std::fs::File::open(path)?;
         let about = file.metadata()?;
         if about.is_file() { io::read_to_string(file) } else { within(file) }

@@ -10,12 +10,14 @@ use std::fs::OpenOptions;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Mutex;
 
 /// The most characters of a word that are shown, unless it may be a path; and of a line.
 const LONGEST: (usize, usize) = (100, 4000);
 
 /// A text as a terminal and a log may have it: names of foreign files turn no colours on, move no cursor and
-/// fill no screen. Control characters, and those that turn the direction of writing, are escaped.
+/// fill no screen. Control characters, and those that turn the direction of writing, are escaped as JSON has
+/// them, which stays what it is.
 pub fn shown(text: &str) -> Cow<'_, str> {
     let is_bad = |c: char| {
         (c.is_control() && c != '\n' && c != '\t')
@@ -26,7 +28,7 @@ pub fn shown(text: &str) -> Cow<'_, str> {
     }
     let mut made = String::with_capacity(text.len());
     for c in text.chars() {
-        let _ = if is_bad(c) { write!(made, "{}", c.escape_default()) } else { write!(made, "{c}") };
+        let _ = if is_bad(c) { write!(made, "\\u{:04x}", u32::from(c)) } else { write!(made, "{c}") };
     }
     made.into()
 }
@@ -45,7 +47,13 @@ pub fn brief(text: &str) -> String {
 
 /// Says something [`brief`] to standard error, as [`shown`].
 pub fn say(text: &str) {
-    eprintln!("{}", shown(&brief(text)));
+    // What nobody can read is no reason to end
+    let _ = writeln!(io::stderr(), "{}", shown(&brief(text)));
+}
+
+/// Says that a file was written.
+pub fn say_wrote(path: &Path) {
+    say(&format!("wrote {}", path.display()));
 }
 
 /// Prints `text`, as [`shown`], to standard output.
@@ -80,17 +88,20 @@ pub fn say_what_is_not_shown(scene: &Scene, path: &Path) {
     }
 }
 
+/// The files that are read.
+static READ: Mutex<Vec<PathBuf>> = Mutex::new(vec![]);
+
+/// Sees to it that nothing is written in the place of a file, which is read.
+pub fn keep(path: &Path) {
+    if let (Ok(path), Ok(mut read)) = (path.canonicalize(), READ.lock()) {
+        read.push(path);
+    }
+}
+
 /// Sees to it that a file can be written, before long work, and is none of those that are read. What is there
 /// stays as it is, and nothing new is left behind. A pipe or device is not touched.
-pub fn check<'a>(path: &Path, read: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
-    let output = Output::open(path).map_err(|error| Failure::output(path, error))?;
-    let real = |path: &Path| path.canonicalize().ok();
-    let is_this = |other: &Path| real(other).is_some_and(|other| real(path) == Some(other));
-    if matches!(output, Output::File(_)) && read.into_iter().any(is_this) {
-        let message = format!("{} is an input, which it would replace: name another file", path.display());
-        return Err(Failure::Argument { argument: "output", message });
-    }
-    Ok(())
+pub fn check(path: &Path) -> Result<(), Failure> {
+    Output::open(path).map(drop)
 }
 
 /// What stands for standard input and output among paths.
@@ -117,8 +128,7 @@ pub fn say_beside(path: Option<&Path>, text: &str) -> Result<ExitCode, Failure> 
 /// # Errors
 /// [`Failure::Output`] if it cannot be written. What was there stays then.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let written = Output::open(path).and_then(|output| output.write(bytes));
-    written.map_err(|error| Failure::output(path, error))
+    Output::open(path)?.write(bytes).map_err(|error| Failure::output(path, error))
 }
 
 /// Where bytes go.
@@ -132,17 +142,23 @@ enum Output {
 }
 
 impl Output {
-    fn open(path: &Path) -> io::Result<Self> {
+    fn open(path: &Path) -> Result<Self, Failure> {
         if is_stream(path) {
             return Ok(Self::Stream);
         }
         // A link stays, and what it leads to is replaced
-        let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        match std::fs::metadata(&path) {
+        let real = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let output = match std::fs::metadata(&real) {
             Ok(there) if there.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
-            Ok(there) if !there.is_file() => Ok(Self::There(path)),
-            _ => WholeFile::begin(path).map(Self::File),
-        }
+            Ok(there) if !there.is_file() => Ok(Self::There(real)),
+            _ if READ.lock().is_ok_and(|read| read.contains(&real)) => {
+                let message =
+                    format!("{} is an input, which it would replace: name another file", path.display());
+                return Err(Failure::Argument { argument: "output", message });
+            }
+            _ => WholeFile::begin(real).map(Self::File),
+        };
+        output.map_err(|error| Failure::output(path, error))
     }
 
     fn write(self, bytes: &[u8]) -> io::Result<()> {
@@ -171,10 +187,10 @@ mod tests {
     fn a_file_is_replaced_by_all_of_the_new_one() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("answers.json");
-        check(&path, None).unwrap();
+        check(&path).unwrap();
         assert_eq!(names(folder.path()), [""; 0], "a check leaves nothing");
         write(&path, b"first, which is long").unwrap();
-        check(&path, None).unwrap();
+        check(&path).unwrap();
         write(&path, b"second").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"second");
         assert_eq!(names(folder.path()), ["answers.json"]);
@@ -186,9 +202,11 @@ mod tests {
         let [input, other] = ["in", "other"].map(|name| folder.path().join(name));
         write(&input, b"precious").unwrap();
         let again = folder.path().join(".").join("in");
-        let refused = check(&again, [input.as_path()]).unwrap_err();
-        assert!(matches!(refused, Failure::Argument { .. }), "{refused}");
-        check(&other, [input.as_path(), Path::new("-")]).unwrap();
+        keep(&input);
+        for refused in [check(&again), write(&again, b"")].map(Result::unwrap_err) {
+            assert!(matches!(refused, Failure::Argument { .. }), "{refused}");
+        }
+        check(&other).unwrap();
     }
 
     #[test]
@@ -204,14 +222,14 @@ mod tests {
     #[test]
     fn foreign_names_are_shown_and_do_nothing() {
         let name = "b\u{1b}]0;title\u{7}\u{202e}\r\u{9b}\n\té";
-        assert_eq!(shown(name), "b\\u{1b}]0;title\\u{7}\\u{202e}\\r\\u{9b}\n\té");
+        assert_eq!(shown(name), "b\\u001b]0;title\\u0007\\u202e\\u000d\\u009b\n\té");
     }
 
     #[test]
     fn what_cannot_be_written_is_refused_at_once() {
         let folder = tempfile::tempdir().unwrap();
         for path in [folder.path().join("missing/file.png"), folder.path().to_owned()] {
-            for refused in [check(&path, None), write(&path, b"")] {
+            for refused in [check(&path), write(&path, b"")] {
                 assert!(matches!(refused, Err(Failure::Output { .. })), "{}", path.display());
             }
         }

@@ -14,7 +14,7 @@ const MODULES: [(&str, &str); 2] =
 
 /// Makes the modules and draws: what comes over standard input, to standard output.
 const DRAW: &str = "
-import json, sys, types
+import json, types
 asked = json.load(sys.stdin)
 for name, source in asked['modules']:
     module = sys.modules[name] = types.ModuleType(name)
@@ -22,6 +22,9 @@ for name, source in asked['modules']:
 drawn = getattr(sys.modules['plots'], asked['kind'])(asked['found'])
 sys.stdout.buffer.write(drawn if isinstance(drawn, bytes) else drawn.encode())
 ";
+
+/// What comes before: nothing is imported from the folder that the program runs in, which may be anybody's.
+const NOT_FROM_HERE: &str = "import sys; sys.path[:] = filter(None, sys.path); ";
 
 /// What Python is called: on Windows, elsewhere, and where another comes first that has no matplotlib.
 const PYTHONS: [&str; 3] = ["python3", "/usr/bin/python3", "python"];
@@ -62,7 +65,7 @@ impl Kind {
 
 /// Sees to it that a file can be drawn and written, before long work.
 pub fn check(path: &Path) -> Result<(), Failure> {
-    output::check(path, None)?;
+    output::check(path)?;
     python().map(drop)
 }
 
@@ -76,8 +79,12 @@ pub fn draw(kind: Kind, found: &Value, path: &Path) -> Result<(), Failure> {
 fn drawn(kind: Kind, found: &Value) -> Result<Vec<u8>, Failure> {
     let asked = json!({ "modules": MODULES, "kind": kind.function(), "found": found }).to_string();
     let failed = |what: &dyn std::fmt::Display| Failure::NoProgram(format!("matplotlib: {what}"));
-    let started =
-        python()?.arg(DRAW).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let started = python()?
+        .arg(format!("{NOT_FROM_HERE}{DRAW}"))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn();
     let mut child = started.map_err(|error| failed(&error))?;
     let mut input = child.stdin.take();
     // It says why it ended where it does not read all
@@ -96,7 +103,8 @@ fn python() -> Result<Command, Failure> {
     let has_matplotlib = |python: &&&str| {
         let mut command = Command::new(python);
         command
-            .args(["-c", "import matplotlib"])
+            .arg("-c")
+            .arg(format!("{NOT_FROM_HERE}import matplotlib"))
             .stdin(Stdio::null())
             .stdout(Stdio::null())
             .stderr(Stdio::null());

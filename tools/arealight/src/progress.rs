@@ -30,7 +30,7 @@ pub fn is_verbose() -> bool {
 /// With `--verbose`, writes a line to the error stream.
 pub fn say(line: impl FnOnce() -> String) {
     if is_verbose() {
-        eprintln!("{}", line());
+        crate::output::say(&line());
     }
 }
 

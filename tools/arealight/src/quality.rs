@@ -1,6 +1,7 @@
 //! Quality levels, as options of a command.
 
 use crate::failure::Failure;
+use crate::output::keep;
 use arealight::{Effects, Footprint, Horizon, Level, LightTable, Lobes, Quality, SpecularLobes};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::path::PathBuf;
@@ -44,7 +45,7 @@ pub fn word_of<T: Copy + Send + Sync>(choices: &'static [Choice<T>]) -> impl Typ
 }
 
 /// How lights are integrated.
-#[derive(clap::Args, Clone, Debug, Default)]
+#[derive(clap::Args, Clone, Debug, Default, PartialEq)]
 #[command(next_help_heading = "Quality")]
 pub struct QualityArguments {
     /// The quality level; docs/cost.md says which to take [default: exact; of pictures of
@@ -78,6 +79,11 @@ fn level_parser() -> impl TypedValueParser<Value = Level> {
 }
 
 impl QualityArguments {
+    /// Whether anything was chosen.
+    pub fn is_given(&self) -> bool {
+        *self != Self::default()
+    }
+
     /// The level chosen, or the default, with what was chosen within it.
     pub fn quality(&self) -> Quality {
         self.within(self.level.unwrap_or_default())
@@ -111,7 +117,14 @@ impl QualityArguments {
     pub fn table(&self) -> Result<LightTable, Failure> {
         match &self.table {
             None => Ok(LightTable::ggx()),
-            Some(path) => arealight_table::load(path).map_err(|error| Failure::input(path, error)),
+            Some(path) => {
+                keep(path);
+                let table = arealight_table::load(path).map_err(|error| Failure::input(path, error))?;
+                if table.pairs().is_none() && self.quality().specular_lobes == SpecularLobes::Two {
+                    return Err(Failure::input(path, "the table has no pairs of lobes: choose one"));
+                }
+                Ok(table)
+            }
         }
     }
 }

@@ -58,7 +58,7 @@ def round_light(radius, angle=None, blend=0.0):
     if angle is not None:
         half = min(0.5 * angle, math.radians(89.0))
         end = math.cos(half)
-        width = max((1.0 - end) * blend, 1e-4)
+        width = (1.0 - end) * max(blend, 1e-3)
 
         def factor(turn):
             step = min(max((math.cos(turn) - end) / width, 0.0), 1.0)

@@ -26,7 +26,7 @@ pub(crate) struct Document {
     folder: Option<PathBuf>,
     /// What the scene may take.
     pub budget: Budget,
-    files: RefCell<HashSet<PathBuf>>,
+    pub files: RefCell<HashSet<PathBuf>>,
     /// When it is shown, in seconds.
     pub time: f64,
 }

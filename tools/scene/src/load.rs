@@ -131,5 +131,6 @@ fn read(mut document: Document, name: String, options: LoadOptions) -> Result<Sc
         bounds,
         warnings: warnings.into_iter().collect(),
         notes: notes.into_iter().collect(),
+        files: document.files.take(),
     })
 }

@@ -7,7 +7,9 @@ use arealight::Light;
 pub use arealight::texture_part::Wrap;
 use arealight_oracle::material::Material;
 use glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
+use std::collections::HashSet;
 use std::ops::Range;
+use std::path::PathBuf;
 
 /// The most triangles a scene may have; a file beyond is refused.
 pub const MAX_TRIANGLES: usize = 1 << 24;
@@ -45,6 +47,8 @@ pub struct Scene {
     pub warnings: Vec<Warning>,
     /// What is shown as the file means, though not word for word: nothing is lost.
     pub notes: Vec<Warning>,
+    /// The files beside the scene's own that were read for it.
+    pub files: HashSet<PathBuf>,
 }
 
 /// An even medium.

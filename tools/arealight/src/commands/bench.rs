@@ -13,7 +13,7 @@ mod stability;
 mod textures;
 
 use crate::failure::Failure;
-use crate::output::{self, print, print_styled, shown};
+use crate::output::{self, print, print_styled, say_beside, shown};
 use crate::{gpu, verdict};
 use arealight_benches::sections::{Markers, replace_section};
 use arealight_engine::Host;
@@ -84,11 +84,12 @@ struct Ends {
 impl Ends {
     /// The device, when it is known that every file can be written.
     fn host(&self) -> Result<Host, Failure> {
-        self.save
-            .as_deref()
-            .into_iter()
-            .chain(self.markdown.as_deref())
-            .try_for_each(|path| output::check(path, None))?;
+        if self.save.is_some() && self.save == self.markdown {
+            let message = "is the file of --markdown too: name another".into();
+            return Err(Failure::Argument { argument: "--save", message });
+        }
+        self.save.iter().chain(&self.markdown).try_for_each(|path| output::check(path))?;
+        self.markdown.as_deref().map_or(Ok(String::new()), there)?;
         gpu::host(self.device.device.as_deref())
     }
 
@@ -100,7 +101,7 @@ impl Ends {
         section: &str,
         text: &str,
     ) -> Result<(), Failure> {
-        let whole = self.markdown.as_deref().map(|path| document(path, markers, section));
+        let whole = self.markdown.as_deref().map(|path| document(path, markers, section)).transpose()?;
         self.report(found, &whole.unwrap_or_default(), text)
     }
 
@@ -115,6 +116,9 @@ impl Ends {
         if let Some(path) = &self.save {
             write(path, &json())?;
         }
+        if let Some(stream) = self.save.iter().chain(&self.markdown).find(|path| output::is_stream(path)) {
+            return say_beside(Some(stream), text).map(drop);
+        }
         if self.json { print(&json()) } else { print_styled(&verdict::for_stdout(&shown(text))) }.map(drop)
     }
 }
@@ -124,10 +128,20 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
 }
 
 /// The document with a section: in its place where it has one, else alone.
-fn document(path: &Path, markers: Markers, section: &str) -> String {
-    let there = std::fs::read_to_string(path).unwrap_or_default();
-    replace_section(&there, markers, section).unwrap_or_else(|| {
+///
+/// # Errors
+/// [`Failure::Input`] where it is there and cannot be read: it would be lost.
+fn document(path: &Path, markers: Markers, section: &str) -> Result<String, Failure> {
+    Ok(replace_section(&there(path)?, markers, section).unwrap_or_else(|| {
         let [begin, end] = markers.lines();
         format!("{begin}\n\n{}\n\n{end}\n", section.trim())
-    })
+    }))
+}
+
+/// The text of a document that may not be there yet.
+fn there(path: &Path) -> Result<String, Failure> {
+    match std::fs::read_to_string(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Failure::input(path, error)),
+        read => Ok(read.unwrap_or_default()),
+    }
 }

@@ -98,16 +98,15 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             let message = format!("{}: the file's name must end in .png", path.display());
             return Err(Failure::Argument { argument: "--output", message });
         }
-        output::check(path, [judged, truth].into_iter().chain(other).map(PathBuf::as_path))?;
+        [judged, truth].into_iter().chain(other).for_each(|path| output::keep(path));
+        output::check(path)?;
     }
     if !(scale.is_finite() && *scale > 0.0) {
         return Err(Failure::Argument { argument: "--scale", message: format!("{scale} is not above 0") });
     }
-    if !exposure.is_finite() {
-        return Err(Failure::Argument {
-            argument: "--exposure",
-            message: format!("{exposure} is no number"),
-        });
+    if !(-64.0..=64.0).contains(exposure) {
+        let message = format!("{exposure} is not within -64 and 64");
+        return Err(Failure::Argument { argument: "--exposure", message });
     }
     let mut images = Images::beside(Path::new(""), memory::most_of);
     let mut read = |path: &Path| images.read(path).map_err(|error| Failure::input(path, error));
@@ -128,7 +127,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 
     if let Some(path) = output {
         map(&a, &b, scale * found.mean).save_png(path)?;
-        eprintln!("wrote {}", path.display());
+        output::say_wrote(path);
     }
     let Difference { error, ratio, largest: (largest, [x, y]), mean, levels: [levels, color] } = found;
     let text = if *json {

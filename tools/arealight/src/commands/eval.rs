@@ -90,6 +90,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         let message = "only --on gpu uses a device".into();
         return Err(Failure::Argument { argument: "--device", message });
     }
+    if arguments.on == Method::Truth && arguments.quality.is_given() {
+        let message = "truth: has no quality level and no table".into();
+        return Err(Failure::Argument { argument: "--on", message });
+    }
     // Read and check both files first: answers may take longer than finding that one is bad
     let cases = read(&arguments.cases, read_cases)?;
     let known = match &arguments.against {
@@ -102,8 +106,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     };
 
     if let Some(path) = &arguments.output {
-        let read = arguments.against.as_deref().into_iter().chain([arguments.cases.as_path()]);
-        output::check(path, read)?;
+        output::check(path)?;
     }
 
     let start = Instant::now();
@@ -117,7 +120,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         Some(path) => {
             output::write(path, text.as_bytes())?;
             if !output::is_stream(path) {
-                eprintln!("wrote {}", path.display());
+                output::say_wrote(path);
             }
         }
         None if known.is_none() => return print(&text),

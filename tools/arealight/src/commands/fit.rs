@@ -38,7 +38,7 @@ pub struct Arguments {
     formula: bool,
     /// Fit no table, but the lobes of Henyey and Greenstein's phase function; print their coefficients as
     /// Rust and GLSL, and their errors.
-    #[arg(long, conflicts_with_all = ["output", "formula", "report", "no_pairs", "json"])]
+    #[arg(long, conflicts_with_all = ["output", "size", "matrices", "formula", "report", "no_pairs", "json"])]
     phase: bool,
     /// Compare the table, and the published one, with the true BRDF on 3000 random quads.
     #[arg(long)]
@@ -57,7 +57,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             .map_err(|error| Failure::Argument { argument: "--output", message: error.to_string() })
     };
     let output = arguments.output.as_deref().map(|path| Ok((path, format(path)?))).transpose()?;
-    output.map_or(Ok(()), |(path, _)| output::check(path, None))?;
+    output.map_or(Ok(()), |(path, _)| output::check(path))?;
     // Fit
     let aim = if arguments.matrices == 1 { Aim::one_for_all() } else { Aim::ByF0 };
     let settings = Settings { size: arguments.size, aim, pairs: !arguments.no_pairs };
@@ -271,7 +271,7 @@ impl Summary<'_> {
             "made_by": self.table.description().made_by,
             "size": self.table.size(),
             "seconds": self.seconds,
-            "output": self.arguments.output,
+            "output": self.arguments.output.as_ref().map(|path| path.display().to_string()),
             "formula": formula,
             "report": report,
         });

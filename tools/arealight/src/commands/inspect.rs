@@ -1,7 +1,7 @@
 //! `arealight inspect`
 
 use crate::failure::Failure;
-use crate::output::print;
+use crate::output::{keep, print, say_wrote};
 use crate::plots::{self, Kind};
 use crate::progress;
 use crate::quality::{FITTED_LOBES, word_of};
@@ -32,10 +32,12 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE.png")]
     output: Option<PathBuf>,
     /// The reflectance at normal incidence of the lobes in the picture, 0 to 1.
-    #[arg(long, value_name = "F0", default_value_t = 1.0)]
+    #[arg(long, value_name = "F0", default_value_t = 1.0, requires = "output",
+        conflicts_with_all = ["errors", "entries"])]
     f0: f64,
     /// How many lobes stand for the specular one in the picture.
-    #[arg(long, value_name = "COUNT", default_value = "one", value_parser = word_of(&FITTED_LOBES))]
+    #[arg(long, value_name = "COUNT", default_value = "one", value_parser = word_of(&FITTED_LOBES),
+        requires = "output", conflicts_with_all = ["errors", "entries"])]
     specular_lobes: SpecularLobes,
     /// Measure the errors of the table, of the table-free formula and of other tables (by one lobe) over
     /// roughness and view angle, and draw these.
@@ -66,6 +68,13 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    arguments
+        .errors
+        .iter()
+        .flatten()
+        .chain(&arguments.table)
+        .chain(&arguments.pyramid)
+        .for_each(|it| keep(it));
     if let Some(path) = &arguments.pyramid {
         return run_pyramid(path, arguments);
     }
@@ -88,7 +97,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             None => (Kind::Lobes, lobes::found(&table, arguments.material())),
         };
         plots::draw(kind, &found, path)?;
-        eprintln!("wrote {}", path.display());
+        say_wrote(path);
     }
     let summary = Summary {
         name: &name,
@@ -105,7 +114,7 @@ fn run_pyramid(path: &Path, arguments: &Arguments) -> Result<ExitCode, Failure> 
     let pyramid = pyramid::make(path, arguments.layer, arguments.device.as_deref())?;
     if let Some(output) = &arguments.output {
         plots::draw(Kind::Pyramid, &pyramid.found(), output)?;
-        eprintln!("wrote {}", output.display());
+        say_wrote(output);
     }
     print(&if arguments.json { pyramid.to_json() } else { pyramid.to_text() })
 }

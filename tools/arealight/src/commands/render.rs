@@ -19,6 +19,7 @@ use arealight_engine::Fog;
 use arealight_scene::{Camera, Scene, SceneFog};
 use frames::{FilmArguments, Frame, Reel};
 use shading::render;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use summary::{Phases, Summary};
@@ -47,7 +48,8 @@ pub struct Arguments {
     #[command(flatten)]
     device: gpu::DeviceArgument,
     /// Integrate the true BRDF by Monte Carlo instead, with so many samples a pixel
-    #[arg(long, value_name = "SPP", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    #[arg(long, value_name = "SPP", conflicts_with = "QualityArguments",
+        value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     reference: Option<u32>,
     /// Exposure of a .png in stops: radiance is multiplied by 2^EV; or auto: nine tenths of what is lit,
     /// lamps apart, have a luminance of at most 0.7
@@ -180,10 +182,10 @@ impl Arguments {
     }
 
     fn output(&self, scene: &Scene) -> PathBuf {
-        let stem = self.scene.as_deref().and_then(Path::file_stem).map(PathBuf::from);
-        let stem = stem.unwrap_or_else(|| scene.name.clone().into());
-        let suffix = if self.reference.is_some() { "-reference.png" } else { ".png" };
-        self.output.clone().unwrap_or_else(|| Path::new(FOLDER).join(format!("{}{suffix}", stem.display())))
+        let stem = self.scene.as_deref().and_then(Path::file_stem).map(OsString::from);
+        let mut name = stem.unwrap_or_else(|| scene.name.clone().into());
+        name.push(if self.reference.is_some() { "-reference.png" } else { ".png" });
+        self.output.clone().unwrap_or_else(|| Path::new(FOLDER).join(name))
     }
 }
 
@@ -266,6 +268,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         let message = "is shaded without shadows: take --shadows off, or leave one of them out".into();
         return Err(Failure::Argument { argument: "--tiles", message });
     }
+    if arguments.shadow_noise.is_some() && !arguments.casts_shadows() {
+        let message = "there are no shadows: leave --shadows off out".into();
+        return Err(Failure::Argument { argument: "--shadow-noise", message });
+    }
 
     // Read the scene
     let mut phases = Phases::default();
@@ -276,7 +282,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if arguments.output.is_none() {
         std::fs::create_dir_all(FOLDER).map_err(|error| Failure::output(FOLDER, error))?;
     }
-    output::check(&reel.file(0), arguments.scene.as_deref())?;
+    output::check(&reel.file(0))?;
     let samples = arguments.size.map(|side| side * arguments.supersample);
 
     // Render, save, picture by picture

@@ -18,7 +18,7 @@ pub struct Completions {
 /// Write manual pages into a folder, one a command.
 #[derive(clap::Args)]
 pub struct Man {
-    /// The folder, which must be there
+    /// The folder, which is made where it is not there
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }

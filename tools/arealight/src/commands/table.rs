@@ -79,8 +79,8 @@ impl Convert {
         let target = Target::of_path(&self.output, precision)
             .map_err(|error| Failure::Argument { argument: "OUT", message: error.to_string() })?;
 
-        let read = self.magnitude.as_deref().into_iter().chain([self.input.as_path()]);
-        output::check(&self.output, read)?;
+        self.magnitude.iter().chain([&self.input]).for_each(|path| output::keep(path));
+        output::check(&self.output)?;
 
         // Read, and bring to size
         let (mut file, adjusted) = self.read()?;
@@ -132,7 +132,8 @@ fn measured(table: &LightTable) -> Result<String, Failure> {
     bar.finish_and_clear();
     let mut text =
         format!("mean absolute error of the reflected radiance over {COUNT} quads of unit radiance");
-    for (name, specular_lobes) in [("one lobe", SpecularLobes::One), ("two lobes", SpecularLobes::Two)] {
+    let levels = [("one lobe", SpecularLobes::One), ("two lobes", SpecularLobes::Two)];
+    for (name, specular_lobes) in levels.into_iter().take(1 + usize::from(table.pairs().is_some())) {
         let errors = measure(table, Level { specular_lobes, horizon: Horizon::Cosine }, &cases);
         let at = |e: &Errors| format!("{:.2e} at F0 = {}", e.mean, e.f0);
         let _ = write!(text, "; {name}: {}", errors.iter().map(at).collect::<Vec<_>>().join(", "));

@@ -44,7 +44,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR", requires = "script")]
     record: Option<PathBuf>,
     /// Frames a second of a recording
-    #[arg(long, value_name = "FPS", default_value_t = 12,
+    #[arg(long, value_name = "FPS", default_value_t = 12, requires = "record",
         value_parser = clap::value_parser!(u32).range(1..=50))]
     rate: u32,
     /// Show the device's times in a recording too, which then differs from run to run
@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // A place for a recording, before anything takes long
     if let Some(folder) = &arguments.record {
         std::fs::create_dir_all(folder).map_err(|error| Failure::output(folder, error))?;
-        output::check(&folder.join(FILM), None)?;
+        output::check(&folder.join(FILM))?;
     }
 
     // Draw
@@ -120,6 +120,10 @@ fn record(
     let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
     let rate = f64::from(arguments.rate);
     let count = (script.seconds() * rate).ceil() as u32 + 1;
+    if crate::film::is_too_large(arguments.size, count) {
+        let message = format!("{count} frames are more than 2 GiB: a lower --rate, or a smaller --size");
+        return Err(Failure::Argument { argument: "--record", message });
+    }
     let bar = progress::bar(u64::from(count), "frames");
     let mut interface = Interface::new(1.0);
     let (mut frames, mut said): (Vec<Canvas>, Vec<Value>) = (vec![], vec![]);
@@ -153,7 +157,7 @@ fn record(
     Look::of(&state).save(&folder.join("look.json"))?;
     let film = folder.join(FILM);
     crate::film::save(&film, &frames, arguments.rate)?;
-    eprintln!("wrote {} frames and {}", frames.len(), film.display());
+    output::say(&format!("wrote {} frames and {}", frames.len(), film.display()));
     if arguments.json { print(&format!("{:#}\n", json!({ "frames": said }))) } else { Ok(ExitCode::SUCCESS) }
 }
 

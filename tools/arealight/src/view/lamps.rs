@@ -108,6 +108,12 @@ impl Edit {
         ranges
     }
 
+    /// Moves it, as far as it may be.
+    pub fn move_by(&mut self, by: DVec3) {
+        let (low, high) = (DVec3::splat(*Self::OFFSET.start()), DVec3::splat(*Self::OFFSET.end()));
+        self.offset = (self.offset + by).clamp(low, high);
+    }
+
     /// A light of this beam; as it is where the light has no front that is one, as spheres, or is bent.
     fn shaped(&self, light: Light) -> Light {
         let beam = self.beam.to_radians();
@@ -151,8 +157,7 @@ pub fn edit(scene: &mut Scene, edits: &[Edit]) {
         let mut bright: Option<(u32, u32)> = None;
         for triangle in scene.triangles.get_mut(lamp.triangles.clone()).into_iter().flatten() {
             triangle.positions = triangle.positions.map(|place| transform.transform_point3(place));
-            let turned =
-                |it: Vec3| transform.transform_vector3(it.as_dvec3()).normalize_or_zero().as_vec3();
+            let turned = |it: Vec3| transform.transform_vector3(it.as_dvec3()).normalize_or_zero().as_vec3();
             triangle.normals = triangle.normals.map(turned);
             triangle.tangents = triangle.tangents.map(|it| turned(it.truncate()).extend(it.w));
             // What it looks like is its material's, which others may have too

@@ -273,7 +273,7 @@ impl State {
                 Grip::Lamp(lamp, distance) => {
                     let forward = self.orbit.camera().forward;
                     let farther = distance * 0.05 * steps;
-                    self.lamps[lamp].offset += forward * farther;
+                    self.lamps[lamp].move_by(forward * farther);
                     self.grip = Grip::Lamp(lamp, distance + farther);
                 }
                 _ => self.orbit.approach(steps),
@@ -353,7 +353,7 @@ impl State {
             Grip::View => self.orbit.turn(drag),
             Grip::Slide => self.orbit.slide(drag),
             Grip::Divider => self.divider = self.pointer[0].clamp(0.0, 1.0),
-            Grip::Lamp(lamp, distance) => self.lamps[lamp].offset += self.orbit.offset(drag, distance),
+            Grip::Lamp(lamp, distance) => self.lamps[lamp].move_by(self.orbit.offset(drag, distance)),
         }
     }
 }

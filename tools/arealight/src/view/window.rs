@@ -188,10 +188,16 @@ impl Desk<'_> {
         let shown = self.viewer.shown(&self.state);
         let mut frame = paint(&self.state, &shown).enlarged(self.size);
         if std::mem::take(&mut self.state.save) {
-            let name = format!("view-{:04}", self.frames);
-            frame.save_png(format!("{name}.png").as_ref())?;
-            Look::of(&self.state).save(format!("{name}.json").as_ref())?;
-            eprintln!("wrote {name}.png and {name}.json");
+            // What was saved before stays, and what cannot be written is no reason to end
+            let mut names = (self.frames..).map(|number| format!("view-{number:04}"));
+            let is_free =
+                |name: &String| !["png", "json"].iter().any(|it| Path::new(name).with_extension(it).exists());
+            let name = names.find(is_free).unwrap_or_default();
+            let saved = frame.save_png(format!("{name}.png").as_ref());
+            match saved.and_then(|()| Look::of(&self.state).save(format!("{name}.json").as_ref())) {
+                Ok(()) => crate::output::say(&format!("wrote {name}.png and {name}.json")),
+                Err(error) => crate::output::say(&format!("error: {error}")),
+            }
         }
         self.interface.draw(&mut frame, &mut self.state, &shown);
         let Some((window, surface)) = &mut self.window else { return Ok(()) };

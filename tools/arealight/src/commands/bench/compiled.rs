@@ -102,7 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         _ => Compiled::default(),
     };
     for path in [&arguments.save, &arguments.markdown, &arguments.update].into_iter().flatten() {
-        output::check(path, None)?;
+        output::check(path)?;
     }
 
     let every = FAMILIES.map(str::to_owned);
@@ -120,7 +120,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 
     // Write and print
     if let Some(path) = &arguments.markdown {
-        write(path, &document(path, Markers::COMPILED, &found.to_markdown()))?;
+        write(path, &document(path, Markers::COMPILED, &found.to_markdown())?)?;
     }
     // Strings and numbers, with strings for keys, always serialise
     let json = serde_json::to_string_pretty(&found).unwrap_or_default() + "\n";
@@ -134,7 +134,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let Some(file) = file else { return Ok(printed) };
     let check = Check::new(&found, &file, arguments.only.is_none())
         .map_err(|error| Failure::NoProgram(error.to_string()))?;
-    eprint!("{}", verdict::for_stderr(&check.to_text(UPDATE)));
+    let _ = std::io::Write::write_all(
+        &mut std::io::stderr(),
+        verdict::for_stderr(&check.to_text(UPDATE)).as_bytes(),
+    );
     Ok(if check.passes() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 

@@ -46,10 +46,9 @@ pub struct Arguments {
 }
 
 fn parse_crop(text: &str) -> Result<[u32; 4], String> {
-    let numbers: Vec<u32> = text.split(',').map_while(|number| number.trim().parse().ok()).collect();
-    let crop: Result<[u32; 4], _> = numbers.try_into();
-    crop.ok()
-        .filter(|[_, _, width, height]| *width > 0 && *height > 0)
+    let numbers: Option<Vec<u32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    let crop: Option<[u32; 4]> = numbers.and_then(|numbers| numbers.try_into().ok());
+    crop.filter(|[_, _, width, height]| *width > 0 && *height > 0)
         .ok_or_else(|| "left, top, width and height are expected, such as 0,40,320,60".to_owned())
 }
 
@@ -94,7 +93,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let format = arguments.format()?;
     let crop = arguments.crop()?;
     let scene = lights::read(&arguments.scene, LoadOptions::default())?;
-    output::check(&arguments.output, [arguments.scene.as_path()])?;
+    output::check(&arguments.output)?;
     let host = gpu::host(arguments.device.device.as_deref())?;
 
     let scenes = match format {
@@ -118,7 +117,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             output::write(&arguments.output, &film)?;
         }
     }
-    eprintln!("wrote {}", arguments.output.display());
+    output::say_wrote(&arguments.output);
     Ok(ExitCode::SUCCESS)
 }
 

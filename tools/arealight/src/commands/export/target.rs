@@ -75,7 +75,8 @@ impl TargetArguments {
         let Some(effects) = self.effects() else { return Ok((files, described)) };
         check(effects)?;
         let spirv = frozen(effects, self.position)?;
-        for language in &self.targets {
+        let twice = |(index, language): &(usize, &Language)| self.targets[..*index].contains(language);
+        for (_, language) in self.targets.iter().enumerate().filter(|it| !twice(it)) {
             let mut add = |spirv: &[u32], name: &str, content: String| {
                 let translated = translate(spirv, *language)
                     .map_err(|message| Failure::Argument { argument: "--target", message })?;

@@ -46,9 +46,6 @@ pub struct Frame {
     pub shadows: Vec<ShadowedView>,
 }
 
-/// The most bytes of the pictures of a .gif, which are all kept until the last.
-const MOST_BYTES: u64 = 1 << 31;
-
 /// Where pictures go.
 pub struct Reel<'a> {
     path: &'a Path,
@@ -68,11 +65,13 @@ impl<'a> Reel<'a> {
             message: format!("{}: {why}", path.display()),
         };
         let format = Picture::check_format(path)?;
-        let bytes = size.map(u64::from).iter().product::<u64>() * 8 * u64::from(film.count());
         match (format, film.frames) {
             (Format::Gif, None) => Err(refused("one picture is no film: .png or .exr, or --frames")),
-            (Format::Gif, _) if bytes > MOST_BYTES => {
+            (Format::Gif, _) if film::is_too_large(size, film.count()) => {
                 Err(refused("a .gif of more than 2 GiB of pictures: smaller ones, or numbered .png"))
+            }
+            (Format::Gif, _) if film.rate > 100 => {
+                Err(refused("a .gif has at most 100 pictures a second: a lower --rate, or numbered .png"))
             }
             (_, Some(_)) if output::is_stream(path) => Err(refused("is one file, not a film's")),
             _ => Ok(Self { path, format, film, shown: vec![] }),
@@ -84,8 +83,10 @@ impl<'a> Reel<'a> {
         if self.film.frames.is_none() || self.format == Format::Gif {
             return self.path.to_owned();
         }
-        let ending = self.path.extension().unwrap_or_default().to_string_lossy();
-        format!("{}-{index:04}.{ending}", self.path.with_extension("").display()).into()
+        let mut name = self.path.with_extension("").into_os_string();
+        name.push(format!("-{index:04}."));
+        name.push(self.path.extension().unwrap_or_default());
+        name.into()
     }
 
     /// Writes the next picture, of `factor` × `factor` samples a pixel; a .gif with its last one.

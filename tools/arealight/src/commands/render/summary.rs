@@ -118,7 +118,7 @@ impl Summary<'_> {
             .collect();
         let rays = outcome.rays(arguments.supersample.pow(2));
         let summary = json!({
-            "scene": arguments.scene_name(),
+            "scene": arguments.scene_name().display().to_string(),
             "triangles": scene.triangles.len(),
             "lights": scene.lights.len(),
             "camera": camera.name,

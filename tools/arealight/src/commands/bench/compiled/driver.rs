@@ -31,7 +31,7 @@ pub fn compile_here(chip: &str, rows: &[Row]) -> Result<ExitCode, Failure> {
     let failed = |error: HostError| Failure::Device(error.to_string());
     let compiler = match Compiler::of_chip(chip) {
         Err(error @ HostError::NoDevice { .. }) => {
-            eprintln!("{error}");
+            crate::output::say(&error.to_string());
             return Ok(ExitCode::from(NO_SUCH_FAMILY));
         }
         made => made.map_err(failed)?,

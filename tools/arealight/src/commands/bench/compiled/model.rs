@@ -35,7 +35,7 @@ pub fn run(found: &Compiled, document_path: Option<&Path>) -> Result<ExitCode, F
         });
     }
     if let Some(path) = document_path {
-        write(path, &document(path, Markers::MODEL, &markdown(&scenes, found, SIZE)))?;
+        write(path, &document(path, Markers::MODEL, &markdown(&scenes, found, SIZE))?)?;
     }
     print(&text(&scenes, found, SIZE))
 }
