@@ -14,10 +14,10 @@ fuzz_target!(|text: &str| {
     let Ok(cases) = memory::follows(text.len(), || read_cases(text)) else { return };
     for case in &cases {
         let no_image = |_: &str| Err("there are no files".to_owned());
-        if let Ok(case) = case.supported(no_image) {
-            let answer = ltc(&TABLE, &case.surface, case.normal, case.view, &case.light);
-            assert!(answer.min_element() >= 0.0 || !case.light.radiance.is_finite(), "{case:?}: {answer}");
+        let Ok(case) = case.supported(no_image) else { continue };
+        if let (Some(light), None) = (case.polygon(), case.medium) {
+            let answer = ltc(&TABLE, &case.surface, case.normal, case.view, &light);
+            assert!(answer.min_element() >= 0.0, "{case:?}: {answer}");
         }
-        let _ = case.supported_shape(no_image);
     }
 });

@@ -14,7 +14,7 @@ uint picked[MOST_SHADOW_RAYS];
 float pick_random[MOST_SHADOW_RAYS];
 // What the picked light adds by the picked lobe.
 vec3 pick_radiance[MOST_SHADOW_RAYS];
-// The luminance of what the lights so far add, and what they add by the diffuse lobe.
+// The size of what the lights so far add, and what they add by the diffuse lobe.
 float pick_sum;
 vec3 pick_diffuse;
 
@@ -30,8 +30,8 @@ void begin_picks(ivec2 pixel) {
 
 // Takes the light at an index, of PICK_SHAPE or 0, into account; what it adds by diffuse and specular lobes.
 void pick_light(uint light, vec3 diffuse, vec3 specular) {
-    float diffuse_part = arealight_luminance(diffuse);
-    float part = diffuse_part + arealight_luminance(specular);
+    float diffuse_part = pick_size(diffuse);
+    float part = diffuse_part + pick_size(specular);
     if (!(part > 0.0)) {
         return;
     }
@@ -49,22 +49,22 @@ void pick_light(uint light, vec3 diffuse, vec3 specular) {
     pick_diffuse += diffuse;
 }
 
-// The colour of a radiance, of luminance 1.
+// The colour of a radiance, of size 1.
 vec3 pick_color(vec3 radiance) {
-    return radiance / max(arealight_luminance(radiance), 1e-37);
+    return radiance / max(pick_size(radiance), 1e-37);
 }
 
 // Stores them, for a pixel that reflects `radiance` without shadows.
 void store_picks(ivec2 pixel, ivec2 size, vec3 radiance) {
     uint at = pixel_picks(pixel, size);
     vec3 specular = max(radiance - pick_diffuse, 0.0);
-    shadow_picks[at] = pack_tens(1023.0 * specular / max(radiance, 1e-37));
+    shadow_picks[at] = pack_tens(1023.0 * specular / max(radiance, 1e-37), 0.5);
     for (int ray = 0; ray < SHADOW_RAYS; ray++) {
         vec3 all = pick_color((picked[ray] & PICK_SPECULAR) != 0u ? specular : pick_diffuse);
         shadow_picks[ray_pick(at, ray)] = picked[ray];
         // 1 in a channel that has no light
         shadow_picks[ray_pick(at, ray) + 1u] = pack_color((pick_color(pick_radiance[ray]) + 1e-6)
-                                                          / (all + 1e-6));
+                                                          / (all + 1e-6), 0.5);
     }
 }
 

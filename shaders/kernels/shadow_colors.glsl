@@ -31,8 +31,9 @@ ShadowColors pixel_colors(ivec2 pixel, ivec2 size, vec4 shadow) {
     return colors;
 }
 
-uvec4 pack_colors(ShadowColors colors) {
-    return uvec4(pack_color(colors[0]), pack_color(colors[1]), pack_color(colors[2]), pack_color(colors[3]));
+uvec4 pack_colors(ShadowColors colors, float rounded) {
+    return uvec4(pack_color(colors[0], rounded), pack_color(colors[1], rounded),
+                 pack_color(colors[2], rounded), pack_color(colors[3], rounded));
 }
 ShadowColors unpack_colors(uvec4 words) {
     return ShadowColors(unpack_color(words.x), unpack_color(words.y), unpack_color(words.z),
@@ -47,8 +48,8 @@ vec3 specular_parts(ivec2 pixel, ivec2 size) {
 // What arrives of a pixel's radiance by its own rays, per channel: right on average, and not always from 0
 // to 1.
 vec3 arriving_by_chance(ShadowColors colors, vec3 radiance, vec3 specular) {
-    float all = arealight_luminance(radiance);
-    float of_specular = arealight_luminance(radiance * specular);
+    float all = pick_size(radiance);
+    float of_specular = pick_size(radiance * specular);
     vec3 hidden_diffuse = colors[0] * (1.0 - specular) / max(all - of_specular, 1e-5 * all);
     vec3 hidden_specular = colors[2] * specular / max(of_specular, 1e-5 * all);
     return 1.0 - (hidden_diffuse + hidden_specular) * all;
@@ -61,8 +62,8 @@ const float FEW_RAYS = 1e-3;
 // none is. A lobe that no ray is of gets what both lobes get. A history's means of what is hidden may be a
 // little more than those of all.
 vec3 arriving_by_means(ShadowColors colors, vec3 specular) {
-    float hidden = arealight_luminance(colors[0] + colors[2]);
-    hidden /= max(arealight_luminance(colors[1] + colors[3]), 1e-37);
+    float hidden = pick_size(colors[0] + colors[2]);
+    hidden /= max(pick_size(colors[1] + colors[3]), 1e-37);
     vec3 few = vec3(FEW_RAYS * hidden);
     vec3 hidden_diffuse = (colors[0] + few) / (colors[1] + FEW_RAYS);
     vec3 hidden_specular = (colors[2] + few) / (colors[3] + FEW_RAYS);

@@ -82,7 +82,7 @@ void put_pixel(int place, ivec2 pixel, ivec2 size, vec3 position, Shadow shadow)
     patch_texels[place] = vec4(position, uintBitsToFloat(packHalf2x16(hidden)));
     patch_normals[place] = pack_normal(load_normal(pixel, position));
     patch_rays[place] = packUnorm4x8(greens);
-    patch_colors[place] = pack_colors(colors);
+    patch_colors[place] = pack_colors(colors, 0.5);
 }
 
 void load_patch(ivec2 corner, ivec2 size) {
@@ -161,7 +161,7 @@ ShadowColors gathered(Center center, float deviation, int reach) {
         }
     }
     colors = any_is_colored ? colors : ShadowColors(rays.xxx, rays.yyy, rays.zzz, rays.www);
-    return colors / max(arealight_luminance(colors[1] + colors[3]), 1e-37);
+    return colors / max(pick_size(colors[1] + colors[3]), 1e-37);
 }
 
 // The part of each channel of a pixel's light that arrives, by means over its neighbours.

@@ -56,7 +56,10 @@ void store_history(ivec2 pixel, ivec2 size, HistoryPixel history) {
     shadow_history[at + 3u] = position.y;
     shadow_history[at + 4u] = position.z;
     shadow_history[at + 5u] = pack_normal(history.normal);
-    uvec4 colors = pack_colors(history.colors);
+    // Up or down by chance, else a mean over many frames stays where a step is less than half of one
+    float turned = 0.61803399 * float(constants.seed & 1023u);
+    float dither = fract(turned + dot(vec2(pixel), vec2(0.75487767, 0.56984029)));
+    uvec4 colors = pack_colors(history.colors, dither);
     for (uint i = 0u; i < 4u; i++) {
         shadow_history[at + 6u + i] = colors[i];
     }

@@ -110,12 +110,54 @@ bool smaller_opening(ArealightGpuLight record, vec3 position, out ArealightShado
     return arealight_opening_height(row, 0u, position) > 0.0 && sizes.x < sizes.y;
 }
 
+// Of a light with a profile, the box in its plane that holds what of it a point is within the cone of: about
+// the foot of the perpendicular from the point, along the light's first edge. False where the profile has no
+// cone, or the box is no smaller than the light's.
+bool box_in_cone(ArealightGpuLight record, vec3 position, out ArealightShadowOutline outline) {
+    uint row = shaping_rows(record).x;
+    if (!AREALIGHT_HAS_PROFILES || row == AREALIGHT_NO_ROW || arealight_bridge_profile(row).x <= 1.0) {
+        return false;
+    }
+    vec3 to_light = record.center - position;
+    uint first = record.first_vertex;
+    vec3 edge = arealight_bridge_vertex(first + 1u) - arealight_bridge_vertex(first);
+    vec3 along = arealight_normalize_or(edge, vec3(1.0, 0.0, 0.0));
+    vec3 across = cross(record.normal, along);
+    vec2 low = vec2(1e30);
+    vec2 high = vec2(-1e30);
+    for (uint index = 0u; index < record.vertex_count; index++) {
+        vec3 vertex = arealight_bridge_vertex(first + index);
+        vec2 place = vec2(dot(vertex, along), dot(vertex, across));
+        low = min(low, place);
+        high = max(high, place);
+    }
+    vec2 foot = -vec2(dot(to_light, along), dot(to_light, across));
+    float reach = abs(dot(to_light, record.normal)) * inversesqrt(arealight_bridge_profile(row).x - 1.0);
+    vec2 from = max(low, foot - reach);
+    vec2 to = min(high, foot + reach);
+    vec2 middle = 0.5 * (from + to);
+    vec2 half_size = 0.5 * max(to - from, 0.0);
+    vec3 center = to_light + middle.x * along + middle.y * across;
+    outline = arealight_rectangle_outline(center, half_size.x * along, half_size.y * across);
+    return half_size.x * half_size.y < 0.2 * (high.x - low.x) * (high.y - low.y);
+}
+
+// The mean of a piece of a light's image, of `part` of its side about a place, as a part of the light's
+// radiance. A little of the whole mean is everywhere: a level has no texel for what is small in it.
+float image_factor(ArealightImage image, vec2 at, float part) {
+    float top = log2(float(arealight_bridge_light_texture_side()));
+    vec2 middle = image.low + 0.5 * image.size;
+    vec2 there = image.low + clamp(at, 0.0, 1.0) * image.size;
+    vec3 mean = arealight_bridge_light_texture(image.layer, 0u, middle, top).rgb;
+    vec3 texel = arealight_bridge_light_texture(image.layer, 0u, there, max(top + log2(part), 0.0)).rgb;
+    return arealight_luminance(texel + 0.01 * mean);
+}
+
 // Texels to a side of what a light's image is drawn by.
 const float IMAGE_SIDE = 8.0;
 
-// The radiance of a place in a light's plane, from its center, as a part of the light's: of no image 1. A
-// little of the mean is everywhere, so that of an image that is black but for a spot all is drawn.
-float image_factor(ArealightImage image, vec3 place) {
+// The same of such a texel about a place in the light's plane, from its center; of no image 1.
+float texel_factor(ArealightImage image, vec3 place) {
     if (!AREALIGHT_HAS_TEXTURED_POLYGONS || image.layer == AREALIGHT_NO_IMAGE) {
         return 1.0;
     }
@@ -123,12 +165,34 @@ float image_factor(ArealightImage image, vec3 place) {
     vec3 from = place - image.corner;
     vec2 at = vec2(dot(from, cross(image.axis_v, normal)), dot(from, cross(normal, image.axis_u)))
             / max(dot(normal, normal), 1e-37);
-    float top = log2(float(arealight_bridge_light_texture_side()));
-    vec2 middle = image.low + 0.5 * image.size;
-    vec2 there = image.low + clamp(at, 0.0, 1.0) * image.size;
-    vec3 mean = arealight_bridge_light_texture(image.layer, 0u, middle, top).rgb;
-    vec3 texel = arealight_bridge_light_texture(image.layer, 0u, there, max(top - log2(IMAGE_SIDE), 0.0)).rgb;
-    return arealight_luminance(texel + 0.01 * mean);
+    return image_factor(image, at, 1.0 / IMAGE_SIDE);
+}
+
+// One of the 8 x 8 texels that a light's image casts shadows by, chosen by its radiance and its form factor:
+// of 4 x 4 one, then of the four in it.
+ArealightShadowOutline image_texel(ArealightImage image, vec3 to_light, mat3 to_space, inout float choice) {
+    vec2 low = vec2(0.0);
+    float part = 1.0;
+    ArealightShadowOutline chosen;
+    for (uint side = 4u; side >= 2u; side -= 2u) {
+        part /= float(side);
+        vec2 first = low;
+        float sum = 0.0;
+        for (uint index = 0u; index < side * side; index++) {
+            vec2 corner = first + part * vec2(index % side, index / side);
+            vec2 at = corner + 0.5 * part;
+            vec3 center = to_light + image.corner + at.x * image.axis_u + at.y * image.axis_v;
+            ArealightShadowOutline texel = arealight_rectangle_outline(center, 0.5 * part * image.axis_u,
+                                                                       0.5 * part * image.axis_v);
+            float weight = image_factor(image, at, part) * arealight_outline_weight(texel, to_space);
+            bool is_chosen = weight > 0.0 && arealight_choose(choice, sum, weight);
+            if (index == 0u || is_chosen) {
+                chosen = texel;
+                low = corner;
+            }
+        }
+    }
+    return chosen;
 }
 
 // Some light has places that shine brighter towards a point than others.
@@ -139,9 +203,9 @@ bool is_uneven(ArealightGpuLight record) {
         || (AREALIGHT_HAS_TEXTURED_POLYGONS && record.texture_layer != NO_LIGHT_TEXTURE);
 }
 
-// A ray over an outline; to a light with a profile, an opening or an image, of several to all of it, or
+// A ray over an outline; to a light with a profile, an opening or an image, of several to where it shines, or
 // through all of the opening, one, by the factor of what they meet. The light's `size` becomes that of what
-// the opening shows.
+// the opening or the profile's cone shows.
 bool draw_ray(uint pick, ArealightShadowOutline outline, ArealightPoint point, mat3 space, vec2 random,
               inout float size, out ArealightShadowRay ray) {
     if (!HAS_UNEVEN) {
@@ -149,19 +213,27 @@ bool draw_ray(uint pick, ArealightShadowOutline outline, ArealightPoint point, m
     }
     uint light = (pick & PICK_SHAPE) == 0u ? pick & PICK_INDEX : 0u;
     bool uneven = (pick & PICK_SHAPE) == 0u && is_uneven(lights[light]);
-    ArealightShadowOutline opening;
-    bool through = uneven && smaller_opening(lights[light], point.position, opening);
-    if (through) {
-        outline = opening;
-        float area = 2.0 * length(cross(opening.axis_u, opening.axis_v));
-        float far = distance(lights[light].center, point.position);
-        size = min(size, sqrt(area) * far / length(opening.center));
-    }
     float choice = fract(dot(random, vec2(37.31, 91.73)));
+    bool through = false;
+    if (uneven) {
+        ArealightGpuLight record = lights[light];
+        ArealightShadowOutline smaller;
+        through = smaller_opening(record, point.position, smaller)
+            || box_in_cone(record, point.position, smaller);
+        if (through) {
+            outline = smaller;
+            float area = 2.0 * length(cross(outline.axis_u, outline.axis_v));
+            vec3 to_light = record.center - point.position;
+            size = min(size, sqrt(area) * length(to_light) / max(length(outline.center), 1e-37));
+        } else if (AREALIGHT_HAS_TEXTURED_POLYGONS && record.texture_layer != NO_LIGHT_TEXTURE) {
+            vec3 to_light = record.center - point.position;
+            outline = image_texel(load_image(record), to_light, space * point.to_frame, choice);
+            through = true;
+        }
+    }
     float sum = 0.0;
     bool is_drawn = false;
-    // An image may be dark but for an eighth
-    int candidates = !uneven ? 0 : lights[light].texture_layer == NO_LIGHT_TEXTURE ? 8 : 16;
+    int candidates = uneven ? 8 : 0;
     int chosen = 0;
     // At last the one that was chosen once more
     for (int index = 0; index <= candidates; index++) {
@@ -176,14 +248,15 @@ bool draw_ray(uint pick, ArealightShadowOutline outline, ArealightPoint point, m
             ray.distance = through ? clamp(height, 0.0, 1e30) : ray.distance;
             vec3 offset = ray.distance * ray.direction;
             float factor = shaping_factor(record, record.normal, point.position, offset)
-                * image_factor(load_image(record), offset - to_light);
+                * texel_factor(load_image(record), offset - to_light);
             factor = through && !is_in_light(record, offset - to_light) ? 0.0 : factor;
             if (index < candidates && factor > 0.0 && arealight_choose(choice, sum, factor)) {
                 chosen = index;
             }
         }
     }
-    return is_drawn && (!uneven || sum > 0.0);
+    // Where none meets what shines the first one stands for it
+    return is_drawn;
 }
 
 // What a ray finds: in x 1 if it arrives, else 0, and the width of the penumbra in y.

@@ -173,7 +173,7 @@ impl TestEngine {
         bound: impl Fn(&EvalPoint) -> f64,
     ) {
         let quality = Quality::default();
-        let answers = self.eval_shapes(points, quality).unwrap();
+        let answers = self.eval(points, quality).unwrap();
         let mut comparison = Comparison::new(what);
         for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
             let EvalPoint { surface, normal, view, light, .. } = given;

@@ -32,6 +32,23 @@ impl Azimuths {
         Some(made)
     }
 
+    /// Those of a mirror image, the azimuth counted from the other side.
+    pub fn mirrored(&self) -> Self {
+        let count = self.factors.len() / self.angles.len();
+        // Halfway round is at a factor or, of an odd count, between two
+        let at = |row: &[f64], half: usize| 0.5 * (row[half / 2 % count] + row[half.div_ceil(2) % count]);
+        let turned = |row: &[f64]| -> Vec<f64> { (0..2 * count).map(|k| at(row, 3 * count - k)).collect() };
+        let factors = self.factors.chunks(count).flat_map(|row| turned(row)).collect();
+        let mirror = |all: &Harmonics| {
+            // cos and sin of m (180 degrees - azimuth)
+            std::array::from_fn(|k| {
+                all[k] * if k % 2 == 0 { DVec2::new(-1.0, 1.0) } else { DVec2::new(1.0, -1.0) }
+            })
+        };
+        let harmonics = self.harmonics.iter().map(mirror).collect();
+        Self { angles: self.angles.clone(), factors, harmonics }
+    }
+
     /// The factors about the axis of the angles before and after one, degrees, and how far it is between.
     fn around(&self, degrees: f64) -> ([&[f64]; 2], f64) {
         let count = self.factors.len() / self.angles.len();

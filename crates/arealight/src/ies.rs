@@ -216,7 +216,10 @@ impl IesProfile {
         let profile = Profile::new(&rows, levels)?;
         // Of a luminance of 1 nit a square metre sends pi lumens
         let candela = self.lumens()[0] / (PI * profile.power());
-        Ok((profile, candela))
+        if candela > 0.0 {
+            return Ok((profile, candela));
+        }
+        Err(LightFault::BadProfile { reason: "nothing is sent to the front: leave the light out".into() })
     }
 }
 
@@ -365,7 +368,9 @@ mod tests {
             let message = IesProfile::parse(&text).unwrap_err().to_string();
             assert!(message.starts_with(expected), "{message}\nnot {expected}");
         }
-        let dark = IesProfile::parse(&file("90 180", "0", "0 1")).unwrap();
-        assert!(dark.profile(4).is_err());
+        for upward in ["0 1", "1 1"] {
+            let dark = IesProfile::parse(&file("90 180", "0", upward)).unwrap();
+            assert!(dark.profile(4).is_err(), "{upward}");
+        }
     }
 }

@@ -49,14 +49,20 @@ impl Light {
     }
 
     /// The light moved by a transform, its node's say: its [shape](LightShape::moved), what it is seen
-    /// through, and on polygons its image, which a transform that mirrors mirrors. A disk's stays as it is.
+    /// through, and its profile and on polygons its image, which a transform that mirrors mirrors. A disk's
+    /// image stays as it is.
     #[must_use]
     pub fn moved(&self, by: &DAffine3) -> Self {
         let mut light = self.clone();
         light.shape = self.shape.moved(by);
         light.opening = self.opening.map(|opening| opening.moved(by));
-        if let Some(texture) = light.texture.as_mut().filter(|_| by.matrix3.determinant() < 0.0) {
-            texture.uvs.reverse();
+        if by.matrix3.determinant() < 0.0 {
+            light.profile = self.profile.as_ref().map(Profile::mirrored);
+            if let Some(texture) = light.texture.as_mut() {
+                let uvs = texture.uvs.as_mut_slice();
+                uvs.reverse();
+                uvs.rotate_right(uvs.len().min(2));
+            }
         }
         light
     }
@@ -208,9 +214,17 @@ pub(crate) mod tests {
         let (axis_u, axis_v) = (DVec3::X, DVec3::Y);
         let opening = Some(Opening { center: DVec3::Z, axis_u, axis_v, housed: true });
         let light = |shape| Light { radiance: Vec3::ONE, shape, ..Light::default() };
+        // Of an odd count of azimuths, of which none is halfway round
+        let rows = [[0.0, 3.0, 3.0, 3.0], [90.0, 0.0, 2.0, 1.0]];
+        let profile = Some(Profile::new(&rows, 4).unwrap());
         let mesh = LightShape::mesh([&vertices[..], &vertices[..3]].concat(), vec![4, 3]);
         let lights = [
-            Light { texture: shown(uvs), opening, ..light(LightShape::Polygon(vertices.clone())) },
+            Light {
+                texture: shown(uvs),
+                opening,
+                profile: profile.clone(),
+                ..light(LightShape::Polygon(vertices.clone()))
+            },
             light(mesh),
             light(LightShape::Disk { center: DVec3::X, axis_u: axis_u * 2.0, axis_v }),
             light(LightShape::Sphere { center: DVec3::X, radius: 0.5 }),
@@ -241,6 +255,21 @@ pub(crate) mod tests {
                 for vertex in was.vertices() {
                     let shown = shows(is, after, by.transform_point3(*vertex));
                     assert_eq!(shown, shows(was, before, *vertex));
+                }
+            }
+            // And sends into each direction what it did
+            if let (Some(before), Some(after)) = (&light.profile, &moved.profile) {
+                let sent = |profile: &Profile, shape: &LightShape, to: DVec3| {
+                    // Counter-clockwise seen from behind
+                    let (edge, front) = (shape.first_edge(), shape.area_vector().normalize());
+                    let turn = DVec2::new(to.dot(edge), to.dot(edge.cross(front)));
+                    let exact = profile.factor_toward(0.5, turn.to_angle());
+                    [exact, profile.azimuth_part(0.5, turn.normalize(), 1.0)]
+                };
+                for to in [0.0, 1.0, 2.5, 4.0].map(|turn| DVec2::from_angle(turn).extend(0.0)) {
+                    let same = sent(after, is, by.transform_vector3(to) * 0.5);
+                    let [exact, harmonics] = sent(before, was, to);
+                    assert!((same[0] - exact).abs() < 1e-12 && (same[1] - harmonics).abs() < 1e-12, "{to}");
                 }
             }
             let through = moved.opening.map(|opening| opening.center);

@@ -118,7 +118,9 @@ impl LightShape {
                 *vertex = point(*vertex);
             }
             if mirrored {
+                // The first edge stays the first, the other way
                 outline.reverse();
+                outline.rotate_right(outline.len().min(2));
             }
         };
         let mut shape = self.clone();

@@ -116,6 +116,13 @@ impl Profile {
         Self { levels: self.placed_levels(angle_of(self.end), levels), ..self.clone() }
     }
 
+    /// That of the same light in a mirror, whose azimuth 0 is where the mirror image of the first edge comes
+    /// from.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        Self { azimuths: self.azimuths.as_ref().map(Azimuths::mirrored), ..self.clone() }
+    }
+
     /// The cone of a spot, as `KHR_lights_punctual` has it, for a flat light: with it the light's *intensity*
     /// is that on its axis up to the angle `inner`, and from there falls to 0 at `outer`, as the square of
     /// what is left of the cosine. In radians, 0 <= inner, outer <= pi / 2; with inner >= outer it ends at

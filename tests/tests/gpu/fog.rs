@@ -4,7 +4,7 @@
 use arealight::{Opening, Profile};
 use arealight_benches::pictures;
 use arealight_cases::answers::read_answers;
-use arealight_cases::cases::{MediumCase, read_cases};
+use arealight_cases::cases::{SupportedCase, read_cases};
 use arealight_engine::MediumPoint;
 use arealight_oracle::phase::{MAX_ANISOTROPY, henyey_greenstein};
 use arealight_oracle::shading::{in_scattered, in_scattered_truth, shape_in_scattered, shape_seen_from};
@@ -44,11 +44,11 @@ fn found(engine: &TestEngine, points: &[MediumPoint]) -> Vec<f64> {
 /// RMSE over mean of a family of cases whose anisotropy is changed.
 fn relative(
     engine: &TestEngine,
-    cases: &[&MediumCase],
+    cases: &[&SupportedCase],
     known: &HashMap<String, [f64; 3]>,
     g: impl Fn(f64) -> f64,
 ) -> f64 {
-    let points: Vec<_> = cases.iter().map(|c| point(g(c.anisotropy), c.view, c.light.clone())).collect();
+    let points: Vec<_> = cases.iter().map(|c| point(g(c.medium.unwrap()), c.view, c.light.clone())).collect();
     let (mut square, mut mean) = (0.0, 0.0);
     for (case, found) in cases.iter().zip(engine.eval_medium(&points, Quality::default()).unwrap()) {
         let truth = DVec3::from(known[&case.name]);
@@ -64,12 +64,12 @@ fn the_reference_is_met_by_family() {
     let Some(engine) = TestEngine::new() else { return };
     let known: HashMap<String, [f64; 3]> =
         read_answers(TRUTH).unwrap().into_iter().map(|a| (a.name, a.radiance.unwrap())).collect();
-    let cases: Vec<MediumCase> = read_cases(CASES)
+    let cases: Vec<SupportedCase> = read_cases(CASES)
         .unwrap()
         .iter()
-        .map(|case| case.supported_medium(|path| panic!("{path}")).unwrap())
+        .map(|case| case.supported(|path| panic!("{path}")).unwrap())
         .collect();
-    let mut families: HashMap<&str, Vec<&MediumCase>> = HashMap::new();
+    let mut families: HashMap<&str, Vec<&SupportedCase>> = HashMap::new();
     for case in &cases {
         families.entry(case.name.split_once('_').unwrap().1).or_default().push(case);
     }

@@ -196,7 +196,7 @@ fn light_from_below_and_other_kinds_of_lights_are_as_ever() {
 
     // Curved outlines have the fitted lobe
     let shapes = under_shapes(7, points(6).into_iter().take(200));
-    let by = |quality| engine.eval_shapes(&shapes, quality).unwrap();
+    let by = |quality| engine.eval(&shapes, quality).unwrap();
     assert_eq!(by(LEVEL), by(Quality::default()));
     assert!(by(LEVEL).iter().filter(|answer| answer.x > 0.0).count() > 100, "they are lit");
 }

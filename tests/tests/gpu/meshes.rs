@@ -182,7 +182,7 @@ fn an_icosphere_is_a_sphere_to_the_error_of_its_faces() {
     }
     let quality = Quality::default();
     let found = engine.eval(&meshes, quality).expect("meshes");
-    let bounds = engine.eval_shapes(&spheres, quality).expect("spheres");
+    let bounds = engine.eval(&spheres, quality).expect("spheres");
     let mut comparison = Comparison::new("icospheres between two spheres");
     let mut outside = 0;
     for (index, (found, bounds)) in found.iter().zip(bounds.chunks_exact(2)).enumerate() {

@@ -24,7 +24,7 @@ fn cases() -> Vec<SupportedCase> {
 fn rays(engine: &TestEngine, cases: &[SupportedCase], count: usize) -> Vec<Vec<Ray>> {
     let (mut points, mut corners) = (Vec::<[f32; 20]>::new(), Vec::<[f32; 4]>::new());
     for case in cases {
-        let vertices = &case.light.vertices;
+        let vertices = case.light.shape.vertices();
         let indices = triangles_of(vertices);
         let first = f32::from_bits(corners.len() as u32 / 3);
         let number = f32::from_bits(indices.len() as u32 / 3);
@@ -32,7 +32,7 @@ fn rays(engine: &TestEngine, cases: &[SupportedCase], count: usize) -> Vec<Vec<R
         let surface = &case.surface;
         let [n, v] = [case.normal, case.view].map(|direction| direction.normalize_or_zero().as_vec3());
         let [d, f] = [surface.diffuse_albedo, surface.f0].map(DVec3::as_vec3);
-        let (l, roughness) = (case.light.radiance.as_vec3(), surface.alpha.sqrt() as f32);
+        let (l, roughness) = (case.light.radiance, surface.alpha.sqrt() as f32);
         points.push([
             n.x,
             n.y,
@@ -66,7 +66,7 @@ fn rays(engine: &TestEngine, cases: &[SupportedCase], count: usize) -> Vec<Vec<R
 /// The part of the unshadowed light that arrives by these rays, per channel. `blocks` says what of a ray's
 /// way to the light is blocked.
 fn shadow(case: &SupportedCase, rays: &[Ray], blocks: impl Fn(DVec3) -> bool) -> DVec3 {
-    let vertices = &case.light.vertices;
+    let vertices = case.light.shape.vertices();
     let normal = (vertices[1] - vertices[0]).cross(vertices[2] - vertices[0]);
     let (mut arrives, mut all) = (DVec3::ZERO, DVec3::ZERO);
     for [direction, color] in rays {
@@ -80,7 +80,8 @@ fn shadow(case: &SupportedCase, rays: &[Ray], blocks: impl Fn(DVec3) -> bool) ->
 }
 
 fn unshadowed(table: &LightTable, case: &SupportedCase) -> DVec3 {
-    ltc_on(Quality::default(), table, &case.surface, case.normal, case.view, &case.light)
+    let light = case.polygon().unwrap();
+    ltc_on(Quality::default(), table, &case.surface, case.normal, case.view, &light)
 }
 
 /// Of each family (diffuse, GGX, GGX over Lambert) the root mean square error over the mean.

@@ -8,6 +8,7 @@ use arealight_engine::{Engine, Reference};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::truth;
 use arealight_tests::prelude::*;
+use arealight_tool_kernels::gpu::VisibilityConstants;
 use glam::DVec2;
 
 fn read(name: &str) -> String {
@@ -16,12 +17,7 @@ fn read(name: &str) -> String {
 }
 
 fn case_point(case: &SupportedCase, profile: Option<Profile>) -> EvalPoint {
-    let light = Light {
-        shape: LightShape::Polygon(case.light.vertices.clone()),
-        radiance: case.light.radiance.as_vec3(),
-        profile,
-        ..Light::default()
-    };
+    let light = Light { profile, ..case.light.clone() };
     EvalPoint { surface: case.surface, position: DVec3::ZERO, normal: case.normal, view: case.view, light }
 }
 
@@ -392,49 +388,72 @@ fn truth_has_openings() {
     }
 }
 
+/// A floor with plates above it, seen from among them.
+struct Above<'a> {
+    engine: &'a TestEngine,
+    buffers: SceneBuffers,
+    constants: VisibilityConstants,
+    options: ShadeOptions,
+}
+
+impl<'a> Above<'a> {
+    const SIZE: [u32; 2] = [16, 16];
+
+    fn new(engine: &'a TestEngine, plates: &[[DVec3; 3]]) -> Self {
+        let [a, b, c, d] =
+            [(-2.0, 2.0), (2.0, 2.0), (2.0, -2.0), (-2.0, -2.0)].map(|(x, z)| DVec3::new(x, 0.0, z));
+        let triangles = [&[[a, b, c], [a, c, d]], plates].concat();
+        let scene = scene_of(&triangles, without_textures(lambert(0.8)));
+        let buffers = SceneBuffers::new(&scene, DVec3::ZERO).unwrap();
+        let look = Camera::framing("", [DVec3::ZERO].into_iter().collect(), DVec3::NEG_Y, DVec3::Z, 1.0);
+        let camera = Camera { position: DVec3::Y * 0.7, half_height: 2.0, ..look };
+        let constants = buffers.constants(&camera, Self::SIZE, Vec3::ZERO);
+        let options = ShadeOptions { surfaces: Effects::DIFFUSE, shadow_rays: 4, ..ShadeOptions::default() };
+        Self { engine, buffers, constants, options }
+    }
+
+    /// The mean of each pixel over what is added.
+    fn seen(&self, lamp: &Light, rounds: u32, shade: impl Fn(&mut SceneRenderer<'_>)) -> Vec<f64> {
+        let lights = std::slice::from_ref(lamp);
+        let mut renderer =
+            SceneRenderer::new(self.engine, &self.buffers, lights, self.constants, Self::SIZE).unwrap();
+        shade(&mut renderer);
+        let radiance = renderer.radiance().unwrap();
+        radiance.iter().map(|pixel| f64::from(pixel.x) / f64::from(rounds)).collect()
+    }
+
+    fn by_rays(&self, lamp: &Light, rounds: u32) -> Vec<f64> {
+        self.seen(lamp, rounds, |renderer| {
+            let unfiltered = (ShadowFilter::Off, ShadowHistory::Off);
+            let view = renderer.shadowed(&self.buffers, self.options, unfiltered).unwrap();
+            for seed in 0..rounds {
+                renderer.shade_shadowed(&view, seed).unwrap();
+            }
+        })
+    }
+}
+
 /// A lamp over a floor with a plate between them, with its shadows and without, is what Monte Carlo says, by
 /// these bounds of pixels' errors, without and with rays; `others` are not.
 fn assert_monte_carlo(lamp: &Light, [plain_bound, shadowed_bound]: [f64; 2], others: &[(&str, &Light)]) {
-    const SIZE: [u32; 2] = [16, 16];
     let Some(mut engine) = TestEngine::new() else { return };
     if lamp.texture.is_some() {
-        load_bright_edge(&mut engine);
+        load_bright_part(&mut engine, |[x, _]| x == 0);
     }
-    let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
-    let [a, b, c, d] = [(-2.0, 2.0), (2.0, 2.0), (2.0, -2.0), (-2.0, -2.0)].map(|(x, z)| corner(x, 0.0, z));
-    let mut triangles = vec![[a, b, c], [a, c, d]];
-    triangles.extend(box_of(corner(0.1, 0.8, -0.2), corner(0.5, 0.85, 0.6)));
-    let scene = scene_of(&triangles, without_textures(lambert(0.8)));
-    let buffers = SceneBuffers::new(&scene, DVec3::ZERO).unwrap();
-    let look = Camera::framing("", [DVec3::ZERO].into_iter().collect(), DVec3::NEG_Y, DVec3::Z, 1.0);
-    let camera = Camera { position: DVec3::Y * 0.7, half_height: 2.0, ..look };
-    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
-    let options = ShadeOptions { surfaces: Effects::DIFFUSE, shadow_rays: 4, ..ShadeOptions::default() };
-    // The mean of each pixel over what is added
-    let seen = |lamp: &Light, rounds: u32, shade: &dyn Fn(&mut SceneRenderer<'_>)| {
-        let lights = std::slice::from_ref(lamp);
-        let mut renderer = SceneRenderer::new(&engine, &buffers, lights, constants, SIZE).unwrap();
-        shade(&mut renderer);
-        let radiance = renderer.radiance().unwrap();
-        radiance.iter().map(|pixel| f64::from(pixel.x) / f64::from(rounds)).collect::<Vec<f64>>()
-    };
+    let plate = box_of(DVec3::new(0.1, 0.8, -0.2), DVec3::new(0.5, 0.85, 0.6));
+    let above = Above::new(&engine, &plate);
     let [plain, shadowed] = [false, true].map(|shadows| {
         let reference = Reference { samples: 4096, seed: 1, shadows, coupled: false, ..Reference::default() };
-        seen(lamp, 1, &|renderer| {
+        above.seen(lamp, 1, |renderer| {
             renderer.reference(reference, |_| {}).unwrap();
         })
     });
     let by_cosines = |lamp: &Light| {
-        seen(lamp, 1, &|renderer| {
-            renderer.shade(options.surfaces, options.quality).unwrap();
+        above.seen(lamp, 1, |renderer| {
+            renderer.shade(above.options.surfaces, above.options.quality).unwrap();
         })
     };
-    let by_rays = seen(lamp, 64, &|renderer| {
-        let view = renderer.shadowed(&buffers, options, (ShadowFilter::Off, ShadowHistory::Off)).unwrap();
-        for seed in 0..64 {
-            renderer.shade_shadowed(&view, seed).unwrap();
-        }
-    });
+    let by_rays = above.by_rays(lamp, 64);
     let mean = |picture: &[f64]| picture.iter().sum::<f64>() / picture.len() as f64;
     for (what, found, expected, bound) in [
         ("by cosines", by_cosines(lamp), &plain, plain_bound),
@@ -480,10 +499,13 @@ fn a_spot_behind_doors_and_its_shadows_are_those_of_monte_carlo() {
     assert_monte_carlo(&spot, [0.06, 0.1], &[("without the cone", &wide), ("without the doors", &open)]);
 }
 
-/// A picture that is dim but for its left edge.
-fn load_bright_edge(engine: &mut Engine) {
+/// A picture that is dim but for some of its 8 x 8 pieces.
+fn load_bright_part(engine: &mut Engine, is_bright: impl Fn([u32; 2]) -> bool) {
     const SIDE: u32 = 64;
-    let texel = |index| if index % SIDE < SIDE / 8 { [1.0, 0.9, 0.7, 1.0] } else { [0.01, 0.01, 0.02, 1.0] };
+    let texel = |index| {
+        let is_bright = is_bright([index % SIDE * 8 / SIDE, index / SIDE * 8 / SIDE]);
+        if is_bright { [1.0, 0.9, 0.7, 1.0] } else { [1e-4, 1e-4, 2e-4, 1.0] }
+    };
     let texels: Vec<[f32; 4]> = (0..SIDE * SIDE).map(texel).collect();
     let texels = SourceTexels::Linear(&texels);
     let image = SourceImage { texels, size: [SIDE; 2], part: TexturePart::default() };
@@ -502,6 +524,29 @@ fn a_picture_and_its_shadows_are_those_of_monte_carlo() {
     let mirrored = uvs.map(|at| DVec2::new(1.0 - at.x, at.y));
     // An eighth of the samples meets what shines
     assert_monte_carlo(&shown(uvs), [0.07, 0.1], &[("the picture mirrored", &shown(mirrored))]);
+}
+
+#[test]
+fn rays_go_to_what_shines() {
+    let Some(mut engine) = TestEngine::new() else { return };
+    load_bright_part(&mut engine, |piece| piece == [1, 2]);
+    let uvs = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(DVec2::from).to_vec();
+    let panel = Light { radiance: Vec3::ONE, shape: square_over(1.0, 2.0), ..Light::default() };
+    let shown = Light { texture: Some(LightTexture { layer: 0, uvs }), ..panel.clone() };
+    let narrow = Light { profile: Some(Profile::spread(0.1, 4).unwrap()), ..panel.clone() };
+    // A plate before all, or before the bright piece of the picture; 1 % of the mean is everywhere in that
+    let (all, piece) = (DVec3::new(3.0, 0.0, 3.0), DVec3::new(0.3, 0.0, 0.3));
+    let of_piece = DVec3::new(-0.625, 1.9, -0.375);
+    for (what, lamp, middle, half, bound) in
+        [("narrow", &narrow, DVec3::Y * 1.9, all, 1e-6), ("picture", &shown, of_piece, piece, 0.03)]
+    {
+        let plate = box_of(middle - half, middle + half + DVec3::Y * 0.01);
+        let hidden =
+            [&plate[..], &[]].map(|plates| Above::new(&engine, plates).by_rays(lamp, 1).iter().sum::<f64>());
+        println!("{what}: {:.2e} arrives", hidden[0] / hidden[1]);
+        // The twin is what arrives without the plate
+        assert!(hidden[1] > 0.0 && hidden[0] < bound * hidden[1], "{what}: {hidden:?}");
+    }
 }
 
 #[test]

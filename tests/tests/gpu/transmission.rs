@@ -117,13 +117,7 @@ fn compare_with_eval(engine: &TestEngine, name: &str, scene: &Scene) {
                 }
             };
             let points: Vec<EvalPoint> = thin.iter().map(point).collect();
-            let is_shape = light.effects().intersects(Effects::SHAPES);
-            let eval = if is_shape {
-                engine.eval_shapes(&points, Quality::default())
-            } else {
-                engine.eval(&points, Quality::default())
-            };
-            let answers = eval.unwrap();
+            let answers = engine.eval(&points, Quality::default()).unwrap();
             sum.iter_mut().zip(answers).for_each(|(sum, answer)| *sum += answer.as_dvec3());
         }
         sum

@@ -45,7 +45,7 @@ pub fn word_of<T: Copy + Send + Sync>(choices: &'static [Choice<T>]) -> impl Typ
 }
 
 /// How lights are integrated.
-#[derive(clap::Args, Clone, Debug, Default, PartialEq)]
+#[derive(clap::Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Quality")]
 pub struct QualityArguments {
     /// The quality level; docs/cost.md says which to take [default: exact; of pictures of
@@ -79,11 +79,6 @@ fn level_parser() -> impl TypedValueParser<Value = Level> {
 }
 
 impl QualityArguments {
-    /// Whether anything was chosen.
-    pub fn is_given(&self) -> bool {
-        *self != Self::default()
-    }
-
     /// The level chosen, or the default, with what was chosen within it.
     pub fn quality(&self) -> Quality {
         self.within(self.level.unwrap_or_default())

@@ -1,8 +1,9 @@
-//! Cases whose light is partly hidden, as cases of what is visible of it.
+//! Cases whose light is partly hidden, as pieces of what is visible of it.
 
 use arealight::LightShape;
 use arealight_cases::answers::Answer;
 use arealight_cases::cases::SupportedCase;
+use arealight_oracle::shading::RelativeLight;
 use arealight_oracle::visibility::visible_parts;
 use arealight_tool_kernels::light_sampling::triangles_of;
 use glam::DVec3;
@@ -10,13 +11,25 @@ use glam::DVec3;
 /// Parts smaller than this share of a light are left out: what rounding leaves where blockers touch.
 const LEAST_PART: f64 = 1e-13;
 
-/// A case for each visible part of its light; the case itself where nothing blocks it, and none where all is
-/// hidden.
-pub fn parts(case: &SupportedCase) -> Vec<SupportedCase> {
-    if case.blockers.is_empty() {
-        return vec![case.clone()];
+/// A case with what is seen of its light.
+pub struct Piece<'a> {
+    pub case: &'a SupportedCase,
+    /// The part of its polygon; all of the light where nothing blocks it.
+    pub part: Option<RelativeLight>,
+}
+
+impl Piece<'_> {
+    /// What is seen, if it is a polygon or one stands for it.
+    pub fn polygon(&self) -> Option<RelativeLight> {
+        self.part.clone().or_else(|| self.case.polygon())
     }
-    let vertices = &case.light.vertices;
+}
+
+/// A piece for each visible part of a case's light; none where all is hidden.
+pub fn pieces(case: &SupportedCase) -> Vec<Piece<'_>> {
+    let whole_light = case.polygon().filter(|_| !case.blockers.is_empty());
+    let Some(light) = whole_light else { return vec![Piece { case, part: None }] };
+    let vertices = &light.vertices;
     let whole = area(vertices);
     let mut parts = Vec::new();
     for triangle in triangles_of(vertices).chunks_exact(3) {
@@ -27,10 +40,10 @@ pub fn parts(case: &SupportedCase) -> Vec<SupportedCase> {
     parts
         .into_iter()
         .map(|mut vertices| {
-            if case.light.profile.is_some() {
+            if light.profile.is_some() {
                 // Begin with an edge too short to be seen that says where the profile's azimuth does, where
                 // the outline stays convex
-                let edge = case.light.azimuth * (1e-9 * whole.sqrt());
+                let edge = light.azimuth * (1e-9 * whole.sqrt());
                 let normal = LightShape::Polygon(vertices.clone()).area_vector();
                 let outside = |vertex: &DVec3| vertex.dot(edge.cross(normal));
                 let farthest = (0..vertices.len())
@@ -38,28 +51,20 @@ pub fn parts(case: &SupportedCase) -> Vec<SupportedCase> {
                 vertices.rotate_left(farthest.unwrap_or(0));
                 vertices.insert(1, vertices[0] + edge);
             }
-            let mut part = case.clone();
-            part.light.vertices = vertices;
-            part.blockers.clear();
-            part
+            Piece { case, part: Some(RelativeLight { vertices, ..light.clone() }) }
         })
         .collect()
 }
 
-/// The answers to cases from those to their parts, of which each case has `counts` in turn.
-pub fn sums(cases: &[SupportedCase], counts: &[usize], of_parts: Vec<Answer>) -> Vec<Answer> {
-    let mut of_parts = of_parts.into_iter();
-    let sum = |(case, count): (&SupportedCase, &usize)| {
-        let of_case: Vec<Answer> = of_parts.by_ref().take(*count).collect();
-        match of_case.iter().find(|answer| answer.radiance.is_none()) {
-            Some(unanswered) => unanswered.clone(),
-            None => Answer::new(
-                &case.name,
-                of_case.iter().filter_map(|answer| answer.radiance).map(DVec3::from_array).sum(),
-            ),
-        }
-    };
-    cases.iter().zip(counts).map(sum).collect()
+/// The answer to a case from those to its pieces.
+pub fn sum(case: &SupportedCase, of_case: &[Answer]) -> Answer {
+    match of_case.iter().find(|answer| answer.radiance.is_none()) {
+        Some(unanswered) => unanswered.clone(),
+        None => Answer::new(
+            &case.name,
+            of_case.iter().filter_map(|answer| answer.radiance).map(DVec3::from_array).sum(),
+        ),
+    }
 }
 
 /// Of a flat polygon.

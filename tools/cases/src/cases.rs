@@ -12,7 +12,6 @@ mod supported;
 
 use arealight::{Light, Opening, Profile};
 use arealight_oracle::material::Surface;
-use arealight_oracle::shading::RelativeLight;
 use arealight_oracle::texture::Texture;
 use arealight_oracle::visibility::Blocker;
 pub use coat::CaseCoat;
@@ -153,62 +152,28 @@ pub struct CaseTexture {
     pub uv: Vec<DVec2>,
 }
 
-/// A case of a polygon light that can be answered: the inputs of [`arealight_oracle::shading`] and of the
-/// GPU's eval kernel.
+/// A case that can be answered, relative to its point: the inputs of [`arealight_oracle::shading`] and of the
+/// GPU's eval kernels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SupportedCase {
     /// The case's name.
     pub name: String,
-    /// The two lobes.
+    /// What the point is on; without lobes where it is in a medium.
     pub surface: Surface,
     /// Surface normal, not zero, of any length.
     pub normal: DVec3,
+    /// Henyey and Greenstein's g, where the point is in a medium.
+    pub medium: Option<f64>,
     /// Direction to the viewer, not zero, of any length.
     pub view: DVec3,
-    /// The light, relative to the shading point, with the image that it shows.
-    pub light: RelativeLight,
-    /// What blocks the light, relative to the shading point.
+    /// The light; the layer of its image is 0.
+    pub light: Light,
+    /// Its radiance in all digits, which float64 answers have.
+    pub radiance: DVec3,
+    /// The image that it shows.
+    pub image: Option<Arc<Texture>>,
+    /// What blocks the light.
     pub blockers: Vec<Blocker>,
-}
-
-/// As [`SupportedCase`], with a light that is no polygon.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ShapeCase {
-    /// The case's name.
-    pub name: String,
-    /// The two lobes.
-    pub surface: Surface,
-    /// Surface normal, not zero, of any length.
-    pub normal: DVec3,
-    /// Direction to the viewer, not zero, of any length.
-    pub view: DVec3,
-    /// The light, relative to the shading point; the layer of its image is 0.
-    pub light: Light,
-    /// The image that it shows.
-    pub image: Option<Arc<Texture>>,
-}
-
-/// As [`SupportedCase`], in a medium and with a light of any kind.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MediumCase {
-    /// The case's name.
-    pub name: String,
-    /// Henyey and Greenstein's g.
-    pub anisotropy: f64,
-    /// Direction to the viewer, not zero, of any length.
-    pub view: DVec3,
-    /// The light, relative to the point; the layer of its image is 0.
-    pub light: Light,
-    /// The image that it shows.
-    pub image: Option<Arc<Texture>>,
-}
-
-/// A case is well-formed, but asks for what is not there yet.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{reason}")]
-pub struct Unsupported {
-    /// What is not supported, in words.
-    pub reason: String,
 }
 
 /// Reads a file of cases.

@@ -1,5 +1,6 @@
 //! Shading points one by one, by the same GLSL as the shade pass.
 
+use crate::eval_shapes::KINDS;
 use crate::{Engine, EngineError};
 use arealight::kernels::Kernel;
 use arealight::{Effects, Light, PackedLights, Quality};
@@ -29,27 +30,22 @@ pub struct EvalPoint {
     pub light: Light,
 }
 
-impl AsRef<Light> for EvalPoint {
-    fn as_ref(&self) -> &Light {
-        &self.light
-    }
-}
-
-impl AsMut<Light> for EvalPoint {
-    fn as_mut(&mut self) -> &mut Light {
-        &mut self.light
-    }
-}
-
 impl Engine {
     /// The radiance that each point sends to its viewer, W/(m² sr), as the shade pass computes it.
     ///
     /// # Errors
     /// [`EngineError`] names a light that cannot be shaded, or says why the device cannot do it.
     pub fn eval(&self, points: &[EvalPoint], quality: Quality) -> Result<Vec<Vec3>, EngineError> {
-        // Points get a pipeline that has no more than they need
-        let needed = |point: &EvalPoint| (point.light.effects() & POLYGONAL) | layer_effects(&point.surface);
-        answers_by(&points.iter().collect::<Vec<_>>(), needed, |needed, subset| {
+        // Points get a pipeline that has no more than they need: of shapes, of their kind alone
+        let needed = |point: &EvalPoint| {
+            let (of_light, layers) = (point.light.effects(), layer_effects(&point.surface));
+            let kind = KINDS.into_iter().find(|(_, effect)| of_light.contains(*effect)).map(|(kind, _)| kind);
+            (kind, if kind.is_none() { (of_light & POLYGONAL) | layers } else { layers })
+        };
+        answers_by(&points.iter().collect::<Vec<_>>(), needed, |(kind, needed), subset| {
+            if let Some(kind) = kind {
+                return self.eval_shapes_with(needed, kind, subset, quality);
+            }
             let dispatch = plan::eval((Effects::all() - POLYGONAL - LAYERS) | needed, quality, 0);
             self.eval_by(dispatch.kernel, &dispatch.specialization, subset)
         })
@@ -118,16 +114,16 @@ pub fn gpu_case(point: &EvalPoint, light: u32) -> GpuCase {
     surface_case(&point.surface, point.normal, point.view, light)
 }
 
-/// The answers of points, in their order, which `answer` gives for all that need the same effects at once.
-pub(crate) fn answers_by<P>(
+/// The answers of points, in their order, which `answer` gives for all that need the same at once.
+pub(crate) fn answers_by<P, N: PartialEq>(
     points: &[&P],
-    needed: impl Fn(&P) -> Effects,
-    answer: impl Fn(Effects, &[&P]) -> Result<Vec<Vec3>, EngineError>,
+    needed: impl Fn(&P) -> N,
+    answer: impl Fn(N, &[&P]) -> Result<Vec<Vec3>, EngineError>,
 ) -> Result<Vec<Vec3>, EngineError> {
-    let mut subsets: Vec<(Effects, Vec<usize>)> = Vec::new();
+    let mut subsets: Vec<(N, Vec<usize>)> = Vec::new();
     for (index, point) in points.iter().enumerate() {
         let needed = needed(point);
-        match subsets.iter_mut().find(|(effects, _)| *effects == needed) {
+        match subsets.iter_mut().find(|(other, _)| *other == needed) {
             Some((_, subset)) => subset.push(index),
             None => subsets.push((needed, vec![index])),
         }

@@ -21,18 +21,6 @@ pub struct MediumPoint {
     pub light: Light,
 }
 
-impl AsRef<Light> for MediumPoint {
-    fn as_ref(&self) -> &Light {
-        &self.light
-    }
-}
-
-impl AsMut<Light> for MediumPoint {
-    fn as_mut(&mut self) -> &mut Light {
-        &mut self.light
-    }
-}
-
 /// What a pipeline has of the lights' effects.
 const OF_LIGHTS: Effects = POLYGONAL
     .union(Effects::AZIMUTH)

@@ -10,33 +10,14 @@ use arealight_vk::Resource;
 use glam::Vec3;
 
 /// The kinds of lights that are no polygons, with the effect of each.
-const KINDS: [(u32, Effects); 3] = [
+pub(crate) const KINDS: [(u32, Effects); 3] = [
     (GpuShape::DISK, Effects::ELLIPSE),
     (GpuShape::SPHERE, Effects::SPHERE),
     (GpuShape::TUBE, Effects::TUBE),
 ];
 
 impl Engine {
-    /// The radiance that each point sends to its viewer, W/(m² sr), by the GLSL library; zero where its light
-    /// is a polygon or mesh.
-    ///
-    /// # Errors
-    /// [`EngineError`] names a light that cannot be shaded, or says why the device cannot do it.
-    pub fn eval_shapes(&self, points: &[EvalPoint], quality: Quality) -> Result<Vec<Vec3>, EngineError> {
-        // A pipeline for each kind: what a driver compiles, and what lights cost, is of one kind only
-        let mut radiance = vec![Vec3::ZERO; points.len()];
-        for (kind, effect) in KINDS {
-            let of_kind = |index: &usize| points[*index].light.effects().contains(effect);
-            let indices: Vec<usize> = (0..points.len()).filter(of_kind).collect();
-            let subset: Vec<&EvalPoint> = indices.iter().map(|&index| &points[index]).collect();
-            for (&index, answer) in indices.iter().zip(self.eval_shapes_as(kind, &subset, quality)?) {
-                radiance[index] = answer;
-            }
-        }
-        Ok(radiance)
-    }
-
-    /// As [`Engine::eval_shapes`], by pipelines that take shapes of that kind or of [`GpuShape::ANY`].
+    /// As [`Engine::eval`], by pipelines that take shapes of that kind or of [`GpuShape::ANY`].
     pub fn eval_shapes_as(
         &self,
         kind: u32,
@@ -51,7 +32,7 @@ impl Engine {
     }
 
     /// The radiance of points whose surfaces have these layers.
-    fn eval_shapes_with(
+    pub(crate) fn eval_shapes_with(
         &self,
         layers: Effects,
         kind: u32,

@@ -2,9 +2,8 @@
 //! [`arealight_vk`], and an example of one.
 //!
 //! [`host`] finds Vulkan and owns a device, memory and submission. [`Engine`] holds a device and the light
-//! table on it. [`Engine::eval`] shades a list of points, [`Engine::eval_shapes`] one under disks, spheres
-//! and tubes; [`SceneRenderer`] finds what a camera sees and shades it, by the fitted lobes or by Monte
-//! Carlo.
+//! table on it. [`Engine::eval`] shades a list of points; [`SceneRenderer`] finds what a camera sees and
+//! shades it, by the fitted lobes or by Monte Carlo.
 
 #![allow(clippy::missing_errors_doc, clippy::missing_panics_doc)] // what the types say
 

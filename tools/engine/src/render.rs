@@ -272,11 +272,12 @@ impl<'a> SceneRenderer<'a> {
     /// So many that a dispatch takes about a second on a CPU and far less on a GPU, whose driver may reset
     /// the device after two seconds; at least one for each pixel and light, however many there are. With
     /// shadows each sample is two rays, which cost some eight times as much. And so few that an invocation's
-    /// loops, over faces and in rays, end before llvmpipe stops them, at 65,535 rounds.
+    /// loops, over faces and in rays among them, end before llvmpipe stops them, at 65,535 rounds.
     fn samples_a_dispatch(&self, shadows: bool) -> u32 {
         let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
         let lights = u64::from(self.lights.light_count + self.lights.shape_count).max(1);
-        let rounds = self.sampling.triangles.len() as u64 + lights * if shadows { 600 } else { 1 };
+        let faces = self.sampling.triangles.len() as u64;
+        let rounds = if shadows { 4 * faces + 600 * lights } else { faces + lights };
         let most = (1 << if shadows { 20 } else { 23 }) / (pixels * lights);
         most.min(60_000 / rounds).clamp(1, 64) as u32
     }

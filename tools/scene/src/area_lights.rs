@@ -116,6 +116,8 @@ impl Placing {
         // It emits along -Z
         let front = (-z).normalize_or_zero();
         let right = (x - front * x.dot(front)).normalize_or_zero();
+        // In a mirror, where the image of azimuth 180 degrees is
+        let right = if node.world.matrix3.determinant() < 0.0 { -right } else { right };
         let up = front.cross(right) * if front.cross(right).dot(y) < 0.0 { -1.0 } else { 1.0 };
         if front == DVec3::ZERO || right == DVec3::ZERO {
             return Err("its node's scale is zero".into());
@@ -138,7 +140,7 @@ fn polygon(light: &AreaLight, node: &PlacedNode) -> Result<LightShape, String> {
     }
     let center = node.world.translation;
     let corner = |u: f64, v: f64| center + right * (u * half_width) + up * (v * half_height);
-    // The first edge goes to the right, mirrored or not: a profile's azimuth begins there
+    // The first edge goes to the right: a profile's azimuth begins there
     let mut vertices = vec![corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)];
     if up.cross(right).dot(front) < 0.0 {
         vertices.reverse();

@@ -164,7 +164,7 @@ impl Said {
         match *self {
             Self::Disk { radius } => {
                 // A mirror turns the order of the axes around, and not the front
-                let (u, v) = if world.matrix3.determinant() < 0.0 { (x, z) } else { (z, x) };
+                let (u, v) = if world.matrix3.determinant() < 0.0 { (-z, x) } else { (z, x) };
                 Ok(LightShape::Disk { center, axis_u: u * radius, axis_v: v * radius })
             }
             Self::Sphere { radius } if is_rotation_and_scale([x, y, z], 3) => {

@@ -86,7 +86,10 @@ impl Said {
             (Some(spread), _) => Some(Profile::spread(spread, LEVELS)),
             (None, rows) => rows.map(|rows| Profile::new(&rows, LEVELS)),
         };
-        let profile = profile.transpose().map_err(|fault| fault.to_string())?.or(light.profile);
+        let mut profile = profile.transpose().map_err(|fault| fault.to_string())?.or(light.profile);
+        if node.world.matrix3.determinant() < 0.0 {
+            profile = profile.as_ref().map(Profile::mirrored);
+        }
         let light = Light { links: node.links, profile, ..light };
         // Of a length of the node's along the light's front
         let front = light.shape.area_vector().normalize_or(DVec3::Z);

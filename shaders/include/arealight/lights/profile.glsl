@@ -28,7 +28,7 @@ vec3 arealight_profile_place(uint profile, float side, float height) {
     vec4 head = arealight_bridge_profile(profile);
     float square = max(side + height, AREALIGHT_LEAST_SQUARE);
     float x = head.x * side / square;
-    float part = sqrt(min(head.z * side / (square + sqrt(square * height)), 1.0));
+    float part = sqrt(min(head.z * side / (square + sqrt(square) * sqrt(height)), 1.0));
     part *= abs(head.w) / (1.0 + (abs(head.w) - 1.0) * part);
     uint piece = x < 1.0 ? min(uint(part * float(AREALIGHT_PROFILE_PIECES)), AREALIGHT_PROFILE_PIECES - 1u)
         : AREALIGHT_PROFILE_PIECES;

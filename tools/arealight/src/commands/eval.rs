@@ -3,18 +3,17 @@
 use crate::failure::Failure;
 use crate::output::{self, print, say_beside};
 use crate::quality::{self, QualityArguments};
-use crate::{gpu, memory, progress, visible};
-use arealight::{LightShape, LightTable};
+use crate::visible::{self, Piece};
+use crate::{gpu, memory, progress};
+use arealight::{LightTable, Quality};
 use arealight_cases::answers::{Answer, read_answers, write_answers};
-use arealight_cases::cases::{
-    Case, CaseError, CaseMaterial, CaseShape, MediumCase, ShapeCase, SupportedCase, read_cases,
-};
+use arealight_cases::cases::{Case, CaseError, SupportedCase, read_cases};
 use arealight_cases::images::Images;
 use arealight_cases::measure::{Measure, UnknownTruth, measure};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::{
-    RelativeLight, Truth, in_scattered, in_scattered_truth, ltc_on, shape_in_scattered,
-    shape_in_scattered_truth, shape_ltc_on, shape_truth, textured_ellipse, truth,
+    Truth, in_scattered, in_scattered_truth, ltc_on, shape_in_scattered, shape_in_scattered_truth,
+    shape_ltc_on, shape_truth, truth,
 };
 use arealight_oracle::texture::Texture;
 use glam::DVec3;
@@ -90,10 +89,6 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         let message = "only --on gpu uses a device".into();
         return Err(Failure::Argument { argument: "--device", message });
     }
-    if arguments.on == Method::Truth && arguments.quality.is_given() {
-        let message = "truth: has no quality level and no table".into();
-        return Err(Failure::Argument { argument: "--on", message });
-    }
     // Read and check both files first: answers may take longer than finding that one is bad
     let cases = read(&arguments.cases, read_cases)?;
     let known = match &arguments.against {
@@ -159,7 +154,7 @@ fn check_known(cases: &[Case], known: &[Answer]) -> Result<(), UnknownTruth> {
     let names: HashSet<&str> = known.map(|answer| answer.name.as_str()).collect();
     // Whether an image can be read is no matter here
     let image = Arc::new(Texture::from_fn(1, 1, |_, _| DVec3::ONE));
-    let is_supported = |case: &Case| supported(case, |_| Ok(Arc::clone(&image))).is_ok();
+    let is_supported = |case: &Case| case.supported(|_| Ok(Arc::clone(&image))).is_ok();
     let unknown = |case: &&Case| !names.contains(case.name.as_str()) && is_supported(case);
     match cases.iter().find(unknown) {
         Some(case) => Err(UnknownTruth { case: case.name.clone() }),
@@ -181,42 +176,6 @@ fn complaint(measures: &[Measure], tolerance: f64) -> Option<String> {
             worst.family
         )
     })
-}
-
-/// A case that can be answered.
-enum Supported {
-    Polygon(SupportedCase),
-    Shape(ShapeCase),
-    Medium(MediumCase),
-}
-
-impl Supported {
-    fn polygon(&self) -> Option<&SupportedCase> {
-        if let Self::Polygon(case) = self { Some(case) } else { None }
-    }
-
-    fn shape(&self) -> Option<&ShapeCase> {
-        if let Self::Shape(case) = self { Some(case) } else { None }
-    }
-
-    fn medium(&self) -> Option<&MediumCase> {
-        if let Self::Medium(case) = self { Some(case) } else { None }
-    }
-}
-
-/// What a case is, or why it cannot be answered.
-fn supported(
-    case: &Case,
-    load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
-) -> Result<Supported, String> {
-    let case = &case.outlined();
-    if matches!(case.material, CaseMaterial::Medium { .. }) {
-        return case.supported_medium(load).map(Supported::Medium).map_err(|error| error.to_string());
-    }
-    if matches!(case.light.shape, CaseShape::Polygon { .. }) {
-        return case.supported(load).map(Supported::Polygon).map_err(|error| error.to_string());
-    }
-    case.supported_shape(load).map(Supported::Shape).map_err(|error| error.to_string())
 }
 
 /// Cases that are answered at a time: what is made of them takes some kilobytes each.
@@ -243,110 +202,73 @@ fn answer_batch(
     engine: &mut gpu::LazyEngine<'_>,
     images: &mut Images,
 ) -> Result<Vec<Answer>, Failure> {
-    // Set aside what is not supported
-    let sorted: Vec<Result<Supported, String>> =
-        cases.iter().map(|case| supported(case, |path| images.load(path))).collect();
-    let known = || sorted.iter().flatten();
-    let whole: Vec<SupportedCase> = known().filter_map(Supported::polygon).cloned().collect();
-    // Of lights behind blockers only what is visible shines
-    let parts: Vec<Vec<SupportedCase>> = whole.iter().map(visible::parts).collect();
-    let counts: Vec<usize> = parts.iter().map(Vec::len).collect();
-    let polygons: Vec<SupportedCase> = parts.into_iter().flatten().collect();
-    let shapes: Vec<ShapeCase> = known().filter_map(Supported::shape).cloned().collect();
-    let media: Vec<MediumCase> = known().filter_map(Supported::medium).cloned().collect();
-    let quality = arguments.quality.quality();
-    let (of_polygons, of_shapes, of_media) = match arguments.on {
-        Method::Gpu => {
-            let polygons = gpu::eval::answer(&polygons, quality, engine, &arguments.cases)?;
-            let shapes = gpu::eval_alike::answer(&shapes, quality, engine, &arguments.cases)?;
-            (polygons, shapes, gpu::eval_alike::answer(&media, quality, engine, &arguments.cases)?)
-        }
-        Method::Oracle | Method::Truth => {
-            // Integrals of the table's lobes are exact, those of the true BRDF have an error
-            let settings = (arguments.on == Method::Truth).then(Settings::default);
-            let exact = |radiance| Truth { radiance, error: DVec3::ZERO, evaluations: 0 };
-            let polygons = answer_in_parallel(&polygons, |case| {
-                let SupportedCase { name, surface, normal, view, light, .. } = case;
-                let found = match &settings {
-                    Some(settings) => truth(surface, *normal, *view, light, settings),
-                    None => exact(ltc_on(quality, table, surface, *normal, *view, light)),
-                };
-                answer_by(name, Some(found))
-            });
-            let shapes = answer_in_parallel(&shapes, |case| {
-                let ShapeCase { name, surface, normal, view, light, .. } = case;
-                let found = match (textured(case), &settings) {
-                    (Some(light), Some(settings)) => Some(truth(surface, *normal, *view, &light, settings)),
-                    (Some(light), None) => {
-                        Some(exact(ltc_on(quality, table, surface, *normal, *view, &light)))
-                    }
-                    (None, Some(settings)) => shape_truth(surface, *normal, *view, light, settings),
-                    (None, None) => shape_ltc_on(quality, table, surface, *normal, *view, light).map(exact),
-                };
-                answer_by(name, found)
-            });
-            let media = answer_in_parallel(&media, |case| {
-                let MediumCase { name, anisotropy: g, view, light, .. } = case;
-                let found = match (relative(case), &settings) {
-                    (Ok(light), Some(settings)) => Some(in_scattered_truth(*g, *view, &light, settings)),
-                    (Ok(light), None) => Some(exact(in_scattered(*g, *view, &light))),
-                    (Err(None), Some(settings)) => shape_in_scattered_truth(*g, *view, light, settings),
-                    (Err(None), None) => shape_in_scattered(*g, *view, light).map(exact),
-                    (Err(Some(reason)), _) => return Answer::none(name, reason),
-                };
-                answer_by(name, found)
-            });
-            (polygons, shapes, media)
-        }
-    };
-    let of_polygons = visible::sums(&whole, &counts, of_polygons);
-    // Put the reasons in between
-    let (mut of_polygons, mut of_shapes) = (of_polygons.into_iter(), of_shapes.into_iter());
-    let mut of_media = of_media.into_iter();
-    let answer = |(case, sorted): (&Case, &Result<Supported, String>)| {
-        let answer = match sorted {
-            Ok(Supported::Polygon(_)) => of_polygons.next(),
-            Ok(Supported::Shape(_)) => of_shapes.next(),
-            Ok(Supported::Medium(_)) => of_media.next(),
-            Err(reason) => Some(Answer::none(&case.name, reason.clone())),
-        };
-        answer.unwrap_or_else(|| Answer::none(&case.name, "no answer was given"))
-    };
-    Ok(cases.iter().zip(&sorted).map(answer).collect())
-}
-
-/// The light of a textured case, as the polygon that stands for it.
-fn textured(case: &ShapeCase) -> Option<RelativeLight> {
-    textured_ellipse(&case.light, Arc::clone(case.image.as_ref()?))
-}
-
-/// The light of a case in a medium, if it is a polygon or one stands for it; else why not, where it may not
-/// be a shape either.
-fn relative(case: &MediumCase) -> Result<RelativeLight, Option<String>> {
-    let polygon = matches!(case.light.shape, LightShape::Polygon(_));
-    match &case.image {
-        None if polygon => Ok(RelativeLight::new(&case.light, DVec3::ZERO)),
-        None => Err(None),
-        Some(image) if polygon => RelativeLight::textured(&case.light, DVec3::ZERO, Arc::clone(image))
-            .map_err(|error| Some(error.to_string())),
-        Some(image) => textured_ellipse(&case.light, Arc::clone(image)).ok_or(None),
+    // Set aside what is not supported; of lights behind blockers only what is visible shines
+    let cases: Vec<Result<SupportedCase, Answer>> = cases
+        .iter()
+        .map(|case| {
+            let supported = case.supported(|path| images.load(path));
+            supported.map_err(|reason| Answer::none(&case.name, reason))
+        })
+        .collect();
+    let mut pieces: Vec<Piece<'_>> = vec![];
+    let mut ranges = vec![];
+    for case in cases.iter().flatten() {
+        let begin = pieces.len();
+        pieces.extend(visible::pieces(case));
+        ranges.push(begin..pieces.len());
     }
+    let quality = arguments.quality.quality();
+    let answers = match arguments.on {
+        Method::Gpu => gpu::eval::answer(&pieces, quality, engine, &arguments.cases)?,
+        Method::Oracle => answer_in_parallel(&pieces, |piece| fitted(piece, quality, table)),
+        Method::Truth => answer_in_parallel(&pieces, exact),
+    };
+    // Put the reasons in between
+    let mut ranges = ranges.into_iter();
+    let answer = |case: Result<&SupportedCase, &Answer>| match case {
+        Ok(case) => visible::sum(case, &answers[ranges.next().unwrap_or_default()]),
+        Err(reason) => reason.clone(),
+    };
+    Ok(cases.iter().map(Result::as_ref).map(answer).collect())
 }
+
+/// By the table's lobes, whose integrals are exact.
+fn fitted(piece: &Piece<'_>, quality: Quality, table: &LightTable) -> Answer {
+    let SupportedCase { name, surface, normal, view, medium, light, .. } = piece.case;
+    let found = match (piece.polygon(), medium) {
+        (Some(light), None) => Some(ltc_on(quality, table, surface, *normal, *view, &light)),
+        (Some(light), Some(g)) => Some(in_scattered(*g, *view, &light)),
+        (None, None) => shape_ltc_on(quality, table, surface, *normal, *view, light),
+        (None, Some(g)) => shape_in_scattered(*g, *view, light),
+    };
+    found.map_or_else(|| Answer::none(name, NO_SHAPE), |radiance| Answer::new(name, radiance))
+}
+
+/// By the true BRDF, whose integral has an error.
+fn exact(piece: &Piece<'_>) -> Answer {
+    let SupportedCase { name, surface, normal, view, medium, light, .. } = piece.case;
+    let settings = &Settings::default();
+    let found = match (piece.polygon(), medium) {
+        (Some(light), None) => Some(truth(surface, *normal, *view, &light, settings)),
+        (Some(light), Some(g)) => Some(in_scattered_truth(*g, *view, &light, settings)),
+        (None, None) => shape_truth(surface, *normal, *view, light, settings),
+        (None, Some(g)) => shape_in_scattered_truth(*g, *view, light, settings),
+    };
+    let Some(Truth { radiance, error, .. }) = found else { return Answer::none(name, NO_SHAPE) };
+    let error = error.max_element();
+    if error > UNKNOWN * radiance.max_element().max(0.0) {
+        let reason = format!("the cubature did not converge: {radiance} give or take {error}");
+        return Answer::none(name, reason);
+    }
+    Answer::new(name, radiance)
+}
+
+/// Why a light that no polygon stands for has no answer.
+const NO_SHAPE: &str = "the light is no disk, sphere or tube";
 
 /// Above this share of the radiance a cubature's error estimate makes it no truth. It is reached only where
 /// the evaluations ran out.
 const UNKNOWN: f64 = 1e-4;
-
-/// The answer to a case; none was found of one whose light is a polygon after all.
-fn answer_by(name: &str, truth: Option<Truth>) -> Answer {
-    let Some(truth) = truth else { return Answer::none(name, "the light is no disk, sphere or tube") };
-    let error = truth.error.max_element();
-    if error > UNKNOWN * truth.radiance.max_element().max(0.0) {
-        let reason = format!("the cubature did not converge: {} give or take {error}", truth.radiance);
-        return Answer::none(name, reason);
-    }
-    Answer::new(name, truth.radiance)
-}
 
 fn answer_in_parallel<T: Sync>(cases: &[T], answer: impl Fn(&T) -> Answer + Send + Sync) -> Vec<Answer> {
     let bar = progress::bar(cases.len() as u64, "cases");

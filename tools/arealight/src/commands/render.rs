@@ -48,8 +48,7 @@ pub struct Arguments {
     #[command(flatten)]
     device: gpu::DeviceArgument,
     /// Integrate the true BRDF by Monte Carlo instead, with so many samples a pixel
-    #[arg(long, value_name = "SPP", conflicts_with = "QualityArguments",
-        value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    #[arg(long, value_name = "SPP", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     reference: Option<u32>,
     /// Exposure of a .png in stops: radiance is multiplied by 2^EV; or auto: nine tenths of what is lit,
     /// lamps apart, have a luminance of at most 0.7

@@ -1,78 +1,84 @@
-//! Reference cases on the GPU.
+//! Cases on the GPU.
 
 use super::{LazyEngine, failure};
 use crate::failure::Failure;
+use crate::visible::Piece;
 use arealight::{Light, LightShape, LightTexture, Quality, TexturePart};
 use arealight_benches::pictures;
 use arealight_cases::answers::Answer;
 use arealight_cases::cases::SupportedCase;
-use arealight_engine::{Engine, EngineError, EvalPoint};
+use arealight_engine::{Engine, EngineError, EvalPoint, MediumPoint};
 use arealight_oracle::texture::Texture;
 use glam::{DVec2, DVec3, Vec3};
 use std::path::Path;
 use std::sync::Arc;
 
-/// One answer a case, by the GLSL of the shade pass. A case whose light float32 cannot hold gets the reason;
-/// the others are answered all the same. `input` is the file of the cases, for errors.
+/// One answer a piece, by the GLSL library. A piece whose light float32 cannot hold gets the reason; the
+/// others are answered all the same. `input` is the file of the cases, for errors.
 pub fn answer(
-    cases: &[SupportedCase],
+    pieces: &[Piece<'_>],
     quality: Quality,
     engine: &mut LazyEngine<'_>,
     input: &Path,
 ) -> Result<Vec<Answer>, Failure> {
     // Set aside the lights that cannot be shaded
     let mut images = Images::default();
-    let points: Vec<_> = cases.iter().map(|case| point(case, &mut images)).collect();
-    let checked: Vec<_> = points.iter().map(|point| point.light.validate()).collect();
-    let shaded = points.into_iter().zip(&checked).filter(|(_, checked)| checked.is_ok());
-    let shaded: Vec<EvalPoint> = shaded.map(|(point, _)| point).collect();
+    let lights: Vec<Light> = pieces.iter().map(|piece| light(piece, &mut images)).collect();
+    let checked: Vec<_> = lights.iter().map(Light::validate).collect();
+    let shaded = pieces.iter().zip(lights).zip(&checked).filter(|(_, checked)| checked.is_ok());
+    // A case's light is relative to its point already
+    let (position, mut on_surfaces, mut in_media) = (DVec3::ZERO, vec![], vec![]);
+    for ((Piece { case, .. }, light), _) in shaded {
+        let &SupportedCase { surface, normal, view, medium, .. } = *case;
+        match medium {
+            None => on_surfaces.push(EvalPoint { surface, position, normal, view, light }),
+            Some(anisotropy) => in_media.push(MediumPoint { anisotropy, position, view, light }),
+        }
+    }
     // Without work no device is needed
-    let radiance = if shaded.is_empty() {
-        Vec::new()
-    } else {
-        let engine = engine.get()?;
+    let (mut of_surfaces, mut of_media) = (vec![].into_iter(), vec![].into_iter());
+    if !on_surfaces.is_empty() || !in_media.is_empty() {
+        let (engine, fail) = (engine.get()?, |error| failure(error, input));
         let eval = |engine: &Engine, points: &[EvalPoint]| engine.eval(points, quality);
-        images.answers(engine, &shaded, eval).map_err(|error| failure(error, input))?
-    };
+        of_surfaces = images.answers(engine, on_surfaces, |it| &mut it.light, eval).map_err(fail)?;
+        let eval = |engine: &Engine, points: &[MediumPoint]| engine.eval_medium(points, quality);
+        of_media = images.answers(engine, in_media, |it| &mut it.light, eval).map_err(fail)?;
+    }
     // Put the reasons in between
-    let mut radiance = radiance.into_iter();
-    let answer = |(case, checked): (&SupportedCase, &Result<_, _>)| match checked {
+    let answer = |(Piece { case, .. }, checked): (&Piece<'_>, &Result<_, _>)| match checked {
         Err(error) => Answer::none(&case.name, format!("{error}")),
-        Ok(()) => match radiance.next() {
+        Ok(()) => match if case.medium.is_none() { of_surfaces.next() } else { of_media.next() } {
             Some(radiance) => Answer::new(&case.name, radiance.as_dvec3()),
             None => Answer::none(&case.name, "the device gave no answer"),
         },
     };
-    Ok(cases.iter().zip(&checked).map(answer).collect())
+    Ok(pieces.iter().zip(&checked).map(answer).collect())
 }
 
-/// A case's light is relative to its shading point already.
-fn point(case: &SupportedCase, images: &mut Images) -> EvalPoint {
-    let mut light = Light {
-        name: case.name.clone(),
-        shape: LightShape::Polygon(case.light.vertices.clone()),
-        radiance: case.light.radiance.as_vec3(),
-        two_sided: case.light.two_sided,
-        profile: case.light.profile.clone(),
-        opening: case.light.opening,
-        ..Light::default()
-    };
-    if let Some(image) = &case.light.image {
-        let uvs = case.light.vertices.iter().map(|vertex| image.map.coordinate(*vertex)).collect();
-        images.show(&mut light, &image.texture, uvs);
+/// What is seen of a piece's light.
+fn light(piece: &Piece<'_>, images: &mut Images) -> Light {
+    let mut light = piece.case.light.clone();
+    let mut uvs = light.texture.take().map_or_else(Vec::new, |texture| texture.uvs);
+    if let Some(part) = &piece.part {
+        let coordinate = |vertex: &DVec3| part.image.as_ref().map(|image| image.map.coordinate(*vertex));
+        uvs = part.vertices.iter().filter_map(coordinate).collect();
+        light.shape = LightShape::Polygon(part.vertices.clone());
     }
-    EvalPoint { surface: case.surface, position: DVec3::ZERO, normal: case.normal, view: case.view, light }
+    if let Some(image) = &piece.case.image {
+        images.show(&mut light, image, uvs);
+    }
+    light
 }
 
 /// The images that lights show.
 #[derive(Default)]
-pub struct Images {
+struct Images {
     known: Vec<(Arc<Texture>, TexturePart)>,
 }
 
 impl Images {
     /// Lets a light show an image, or its piece of it: its layer is its number among all.
-    pub fn show(&mut self, light: &mut Light, image: &Arc<Texture>, mut uvs: Vec<DVec2>) {
+    fn show(&mut self, light: &mut Light, image: &Arc<Texture>, mut uvs: Vec<DVec2>) {
         // Rounded, so that what is seen of all of it is all
         let even = |uv: DVec2| (uv * 1048576.0).round() / 1048576.0;
         let low = even(uvs.iter().copied().fold(DVec2::INFINITY, DVec2::min));
@@ -97,20 +103,20 @@ impl Images {
     }
 
     /// The answers of points, in their order, an image at a time: none depends on the others.
-    pub fn answers<P: AsRef<Light> + AsMut<Light> + Clone>(
+    fn answers<P: Clone>(
         &self,
         engine: &mut Engine,
-        points: &[P],
+        mut points: Vec<P>,
+        light: fn(&mut P) -> &mut Light,
         answer: impl Fn(&Engine, &[P]) -> Result<Vec<Vec3>, EngineError>,
-    ) -> Result<Vec<Vec3>, EngineError> {
+    ) -> Result<std::vec::IntoIter<Vec3>, EngineError> {
         let mut answers = vec![Vec3::ZERO; points.len()];
-        let layer = |point: &P| point.as_ref().texture.as_ref().map(|texture| texture.layer as usize);
+        // Each is shown alone
+        let shown = |point| light(point).texture.as_mut().map(|it| std::mem::take(&mut it.layer) as usize);
+        let layers: Vec<Option<usize>> = points.iter_mut().map(shown).collect();
         for image in (0..self.known.len()).map(Some).chain([None]) {
-            let indices: Vec<usize> = (0..points.len()).filter(|i| layer(&points[*i]) == image).collect();
-            let mut shown: Vec<P> = indices.iter().map(|i| points[*i].clone()).collect();
-            for texture in shown.iter_mut().filter_map(|point| point.as_mut().texture.as_mut()) {
-                texture.layer = 0;
-            }
+            let indices: Vec<usize> = (0..points.len()).filter(|i| layers[*i] == image).collect();
+            let shown: Vec<P> = indices.iter().map(|i| points[*i].clone()).collect();
             let (images, parts): (Vec<_>, Vec<_>) =
                 image.map(|image| self.known[image].clone()).into_iter().unzip();
             pictures::load(engine, &images, |index| parts[index])?;
@@ -118,6 +124,6 @@ impl Images {
                 answers[index] = radiance;
             }
         }
-        Ok(answers)
+        Ok(answers.into_iter())
     }
 }

@@ -1,7 +1,6 @@
 //! The commands' way to a device.
 
 pub mod eval;
-pub mod eval_alike;
 
 use crate::failure::Failure;
 use crate::progress;

@@ -43,7 +43,7 @@ fn wrong_arguments_are_exit_code_2() {
         (&["render", &room, "--camera", "nobody"], &["--camera", "nobody"]),
         (&["paint"], &["paint"]),
         (&["-q", "-v", "devices"], &["--quiet", "--verbose"]),
-        (&["inspect", "--f0", "2"], &["--f0", "0 to 1"]),
+        (&["inspect", "--f0", "2", "-o", "lobes.png"], &["--f0", "0 to 1"]),
         (&["inspect", "--specular-lobes", "none"], &["--specular-lobes", "one", "two"]),
         (&["inspect", "--entries"], &["--output"]),
         (&["inspect", "--entries", "-o", "a.png", "--errors"], &["--errors", "--entries"]),
@@ -306,7 +306,7 @@ fn shadows_go_on_where_they_are_noisy() {
     let [converged, once] = [[&a, &b], [&once, &other]].map(noise_of_parts);
     // Few blocks have most of the noise, so that one pair of pictures tells it to a half
     assert!(converged.iter().all(|noise| *noise < 0.45), "{converged:.2?}");
-    assert!(once.iter().any(|noise| *noise > 1.0) && once.iter().any(|noise| *noise < 0.1), "{once:.2?}");
+    assert!(once.iter().any(|noise| *noise > 0.8) && once.iter().any(|noise| *noise < 0.1), "{once:.2?}");
     let rays = |name: &str| summary[name].as_f64().unwrap();
     assert!(rays("shadow_rays_most") > 1.5 * rays("shadow_rays"), "{summary}");
 }

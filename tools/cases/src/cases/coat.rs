@@ -1,7 +1,7 @@
 //! The clear coat of a case.
 
+use super::CaseError;
 use super::fields::Fields;
-use super::{CaseError, Unsupported};
 use arealight::MIN_ALPHA;
 use arealight_oracle::material::Coat;
 use glam::DVec3;
@@ -41,17 +41,14 @@ impl CaseCoat {
         })
     }
 
-    /// The coat as the library has it.
-    pub(super) fn supported(&self) -> Result<Coat, Unsupported> {
+    /// The coat as the library has it, or why it cannot be.
+    pub(super) fn supported(&self) -> Result<Coat, String> {
         let Self { weight, alpha, f0, normal, by_albedo } = *self;
-        let unsupported = |reason: String| Err(Unsupported { reason });
         if f0 != Coat::F0 {
-            return unsupported(format!("coat_F0 {f0} is not supported; {} is", Coat::F0));
+            return Err(format!("coat_F0 {f0} is not supported; {} is", Coat::F0));
         }
         if alpha < MIN_ALPHA {
-            return unsupported(format!(
-                "coat_alpha {alpha} is below {MIN_ALPHA}, the smallest that is shaded"
-            ));
+            return Err(format!("coat_alpha {alpha} is below {MIN_ALPHA}, the smallest that is shaded"));
         }
         Ok(Coat { weight, alpha, normal, by_albedo })
     }

@@ -1,8 +1,8 @@
 //! What the surface of a case is made of.
 
+use super::CaseError;
 use super::coat::CaseCoat;
 use super::fields::Fields;
-use super::{CaseError, Unsupported};
 use arealight::MIN_ALPHA;
 use arealight_oracle::material::{Anisotropy, Interface, Sheen, Surface};
 use arealight_oracle::sheen::MIN_ROUGHNESS;
@@ -99,27 +99,26 @@ impl CaseMaterial {
         }
     }
 
-    /// The surface as the library has it; `tangent` is what `alpha_x` runs along.
-    pub(super) fn surface(&self, tangent: Option<DVec3>) -> Result<Surface, Unsupported> {
-        let unsupported = |reason: String| Err(Unsupported { reason });
+    /// The surface as the library has it, or why it cannot be; `tangent` is what `alpha_x` runs along.
+    pub(super) fn surface(&self, tangent: Option<DVec3>) -> Result<Surface, String> {
         match self {
             Self::Sheen(sheen) | Self::Ggx { sheen: Some(sheen), .. } if sheen.roughness < MIN_ROUGHNESS => {
                 let roughness = sheen.roughness;
-                unsupported(format!(
+                Err(format!(
                     "sheen_roughness {roughness} is below {MIN_ROUGHNESS}, the smallest that is shaded"
                 ))
             }
-            Self::Medium { .. } => unsupported("the point is in a medium, on no surface".into()),
+            Self::Medium { .. } => Err("the point is in a medium, on no surface".into()),
             Self::Sheen(sheen) => Ok(Surface { sheen: Some(*sheen), ..Surface::default() }),
             &Self::Diffuse { albedo: diffuse_albedo, roughness: diffuse_roughness } => {
                 Ok(Surface { diffuse_albedo, diffuse_roughness, ..Surface::default() })
             }
             Self::Ggx { alpha, .. } if alpha.min_element() < MIN_ALPHA => {
                 let least = alpha.min_element();
-                unsupported(format!("alpha {least} is below {MIN_ALPHA}, the smallest that is shaded"))
+                Err(format!("alpha {least} is below {MIN_ALPHA}, the smallest that is shaded"))
             }
             Self::Ggx { alpha, .. } if alpha.x != alpha.y && tangent.is_none() => {
-                unsupported("alpha_x and alpha_y differ, and there is no tangent".into())
+                Err("alpha_x and alpha_y differ, and there is no tangent".into())
             }
             Self::Ggx { alpha, f0, albedo, coat, sheen, coupled, film } => Ok(Surface {
                 diffuse_albedo: albedo.unwrap_or(DVec3::ZERO),

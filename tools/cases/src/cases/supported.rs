@@ -1,121 +1,54 @@
 //! What of a case can be answered: its light relative to its point, its surface, its image.
 
-use super::{
-    Case, CaseLight, CaseMaterial, CaseShape, CaseTexture, MediumCase, ShapeCase, SupportedCase, Unsupported,
-};
-use arealight::{Light, LightFault, LightShape, LightTexture, TubeEnds};
-use arealight_oracle::shading::RelativeLight;
+use super::{Case, CaseMaterial, CaseShape, CaseTexture, SupportedCase};
+use arealight::{Light, LightShape, LightTexture, TubeEnds};
+use arealight_oracle::material::Surface;
+use arealight_oracle::shading::{RelativeLight, textured_ellipse};
 use arealight_oracle::texture::Texture;
 use glam::{DAffine3, DVec3};
-use std::borrow::Cow;
 use std::sync::Arc;
 
-/// Lights, lobes and fields that can be answered.
 impl Case {
-    /// The case as something that can be answered now: a surface of its lobes under a polygon. See
-    /// [`Case::supported_shape`] for other lights.
+    /// The case as something that can be answered now.
     ///
     /// `load` gives the image of a path beside the file of cases, linear, or says why it cannot; it is called
     /// for every case that has one, so it should keep what it has loaded.
     ///
     /// # Errors
-    /// [`Unsupported`] with the reason, in words.
+    /// Why it cannot be, in words.
     pub fn supported(
         &self,
         load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
-    ) -> Result<SupportedCase, Unsupported> {
-        let shape = &self.light.shape;
-        if !matches!(shape, CaseShape::Polygon { .. }) {
-            let reason = format!("light.type \"{}\" is no polygon", shape.name());
-            return Err(Unsupported { reason });
+    ) -> Result<SupportedCase, String> {
+        if let Some(field) = self.unknown_fields.first() {
+            return Err(format!("the field {field}"));
         }
-        let (light, image) = self.relative_light(load)?;
-        let relative = match image {
-            Some(image) => RelativeLight::textured(&light, DVec3::ZERO, image).map_err(of_light)?,
-            None => RelativeLight::new(&light, DVec3::ZERO),
+        let (surface, medium) = match self.material {
+            CaseMaterial::Medium { anisotropy } => (Surface::default(), Some(anisotropy)),
+            _ => (self.material.surface(self.tangent)?, None),
         };
+        let (light, image) = self.relative_light(load)?;
+        if !self.blockers.is_empty() && !matches!(light.shape, LightShape::Polygon(_)) {
+            return Err("occluders: before a light that is no polygon".into());
+        }
         Ok(SupportedCase {
             name: self.name.clone(),
-            surface: self.material.surface(self.tangent)?,
+            surface,
             normal: self.normal,
+            medium,
             view: self.view,
-            light: RelativeLight { radiance: self.light.radiance, ..relative },
+            light,
+            radiance: self.light.radiance,
+            image,
             blockers: self.blockers.iter().map(|blocker| blocker.map(|v| v - self.position)).collect(),
         })
     }
 
-    /// The case as [`Case::supported`] has it, if its light is a disk, a sphere or a cylinder. `load` is as
-    /// it is there.
-    ///
-    /// # Errors
-    /// [`Unsupported`] with the reason, in words.
-    pub fn supported_shape(
-        &self,
-        load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
-    ) -> Result<ShapeCase, Unsupported> {
-        if matches!(self.light.shape, CaseShape::Polygon { .. }) {
-            return Err(Unsupported { reason: "the light is a polygon".into() });
-        }
-        let (light, image) = self.unblocked_light(load)?;
-        Ok(ShapeCase {
-            name: self.name.clone(),
-            surface: self.material.surface(self.tangent)?,
-            normal: self.normal,
-            view: self.view,
-            light,
-            image,
-        })
-    }
-
-    /// The case as [`Case::supported`] has it, if its point is in a medium. `load` is as it is there.
-    ///
-    /// # Errors
-    /// [`Unsupported`] with the reason, in words.
-    pub fn supported_medium(
-        &self,
-        load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
-    ) -> Result<MediumCase, Unsupported> {
-        let CaseMaterial::Medium { anisotropy } = self.material else {
-            return Err(Unsupported { reason: "the point is on a surface".into() });
-        };
-        let (light, image) = self.unblocked_light(load)?;
-        Ok(MediumCase { name: self.name.clone(), anisotropy, view: self.view, light, image })
-    }
-
-    /// The case with the polygon that stands for its light, if that is a disk with a profile or an opening:
-    /// [`Light::outlined`].
-    pub fn outlined(&self) -> Cow<'_, Self> {
-        let CaseShape::Disk { center, axis_u, axis_v, texture: None } = self.light.shape else {
-            return Cow::Borrowed(self);
-        };
-        let (profile, opening) = (self.light.profile.clone(), self.light.opening);
-        let shape = LightShape::Disk { center, axis_u, axis_v };
-        let disk = Light { profile, opening, shape, ..Light::default() };
-        let LightShape::Polygon(vertices) = &disk.outlined().shape else { return Cow::Borrowed(self) };
-        let shape = CaseShape::Polygon { vertices: vertices.clone(), texture: None };
-        Cow::Owned(Self { light: CaseLight { shape, ..self.light.clone() }, ..self.clone() })
-    }
-
-    /// As [`Case::relative_light`], which nothing blocks.
-    fn unblocked_light(
-        &self,
-        load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
-    ) -> Result<(Light, Option<Arc<Texture>>), Unsupported> {
-        if !self.blockers.is_empty() {
-            let reason = "occluders: before a light that is no polygon, or in a medium".into();
-            return Err(Unsupported { reason });
-        }
-        self.relative_light(load)
-    }
-
-    /// The light relative to the point, with its image.
+    /// The light relative to the point, or the polygon that [stands](Light::outlined) for it, with its image.
     fn relative_light(
         &self,
         mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
-    ) -> Result<(Light, Option<Arc<Texture>>), Unsupported> {
-        if let Some(field) = self.unknown_fields.first() {
-            return Err(Unsupported { reason: format!("the field {field}") });
-        }
+    ) -> Result<(Light, Option<Arc<Texture>>), String> {
         let shape = match &self.light.shape {
             CaseShape::Polygon { vertices, .. } => LightShape::Polygon(vertices.clone()),
             &CaseShape::Disk { center, axis_u, axis_v, .. } => LightShape::Disk { center, axis_u, axis_v },
@@ -131,13 +64,9 @@ impl Case {
             CaseShape::Polygon { texture: Some(CaseTexture { path, uv }), .. } => Some((path, uv.clone())),
             _ => None,
         };
-        let image = match &shown {
-            Some((path, _)) => {
-                let reason = |reason| Unsupported { reason: format!("light.texture: {path}: {reason}") };
-                Some(load(path).map_err(reason)?)
-            }
-            None => None,
-        };
+        let mut load =
+            |path: &String| load(path).map_err(|reason| format!("light.texture: {path}: {reason}"));
+        let image = shown.as_ref().map(|(path, _)| load(path)).transpose()?;
         let light = Light {
             name: self.name.clone(),
             radiance: self.light.radiance.as_vec3(),
@@ -149,11 +78,20 @@ impl Case {
             ..Light::default()
         };
         let light = light.moved(&DAffine3::from_translation(-self.position));
-        light.validate().map_err(of_light)?;
-        Ok((light, image))
+        light.validate().map_err(|fault| format!("light.{fault}"))?;
+        Ok((light.outlined().into_owned(), image))
     }
 }
 
-fn of_light(fault: LightFault) -> Unsupported {
-    Unsupported { reason: format!("light.{fault}") }
+impl SupportedCase {
+    /// The light with its image, if it is a polygon or one stands for it.
+    pub fn polygon(&self) -> Option<RelativeLight> {
+        let relative = match (&self.image, &self.light.shape) {
+            (None, LightShape::Polygon(_)) => Some(RelativeLight::new(&self.light, DVec3::ZERO)),
+            (None, _) => None,
+            (Some(image), LightShape::Disk { .. }) => textured_ellipse(&self.light, Arc::clone(image)),
+            (Some(image), _) => RelativeLight::textured(&self.light, DVec3::ZERO, Arc::clone(image)).ok(),
+        };
+        relative.map(|light| RelativeLight { radiance: self.radiance, ..light })
+    }
 }

@@ -29,7 +29,7 @@ pub fn known_of(name: &str, is_it: impl Fn(&Case) -> bool) -> Vec<Known> {
         let radiance = answers.iter().find(|answer| answer.name == case.name).unwrap().radiance.unwrap();
         let case = case.supported(|path| panic!("{path}")).unwrap();
         let (normal, view, radiance) = (case.normal, case.view, radiance.into());
-        Known { surface: case.surface, normal, view, light: case.light, radiance }
+        Known { surface: case.surface, normal, view, light: case.polygon().unwrap(), radiance }
     };
     read_cases(&read(&format!("{name}.json"))).unwrap().into_iter().filter(is_it).map(one).collect()
 }

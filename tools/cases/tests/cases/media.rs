@@ -1,12 +1,10 @@
 //! Points in a medium: the truth against the reference.
 
-use arealight::LightShape;
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::read_cases;
 use arealight_cases::measure::relative_error;
 use arealight_oracle::cubature::Settings;
-use arealight_oracle::shading::{RelativeLight, in_scattered_truth, shape_in_scattered_truth};
-use glam::DVec3;
+use arealight_oracle::shading::{in_scattered_truth, shape_in_scattered_truth};
 
 #[test]
 fn the_truth_of_media_agrees_with_the_reference() {
@@ -22,13 +20,10 @@ fn the_truth_of_media_agrees_with_the_reference() {
     let differing = |grown: f64| {
         let differs = |(case, known): (&_, &arealight_cases::answers::Answer)| {
             let case: &arealight_cases::cases::Case = case;
-            let medium = case.supported_medium(|path| panic!("{path}")).unwrap();
-            let (g, view, light) = (medium.anisotropy * grown, medium.view, &medium.light);
-            let truth = if matches!(light.shape, LightShape::Polygon(_)) {
-                in_scattered_truth(g, view, &RelativeLight::new(light, DVec3::ZERO), &settings)
-            } else {
-                shape_in_scattered_truth(g, view, light, &settings).unwrap()
-            };
+            let found = case.supported(|path| panic!("{path}")).unwrap();
+            let (g, view, light) = (found.medium.unwrap() * grown, found.view, &found.light);
+            let truth = found.polygon().map(|light| in_scattered_truth(g, view, &light, &settings));
+            let truth = truth.or_else(|| shape_in_scattered_truth(g, view, light, &settings)).unwrap();
             assert_eq!(case.name, known.name);
             relative_error(truth.radiance.into(), known.radiance.unwrap()) > 1e-3
         };

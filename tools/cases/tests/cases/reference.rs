@@ -3,7 +3,7 @@
 use crate::read;
 use arealight::LightShape;
 use arealight_cases::answers::read_answers;
-use arealight_cases::cases::{Case, ShapeCase, SupportedCase, read_cases};
+use arealight_cases::cases::{Case, SupportedCase, read_cases};
 use arealight_cases::images::Images;
 use arealight_cases::measure::{Family, relative_error};
 use arealight_oracle::cubature::Settings;
@@ -17,10 +17,8 @@ fn cases() -> Vec<Case> {
 }
 
 fn supported() -> Vec<(Family, SupportedCase)> {
-    cases()
-        .iter()
-        .filter_map(|case| Some((Family::of(case), case.supported(|path| Ok(image(path))).ok()?)))
-        .collect()
+    let supported = |case: &Case| Some((Family::of(case), case.supported(|path| Ok(image(path))).ok()?));
+    cases().iter().filter_map(supported).collect()
 }
 
 /// The reference's one image.
@@ -41,11 +39,15 @@ fn known(name: &str) -> [f64; 3] {
 }
 
 fn answer(case: &SupportedCase) -> [f64; 3] {
-    truth(&case.surface, case.normal, case.view, &case.light, &Settings::default()).radiance.to_array()
+    let SupportedCase { surface, normal, view, light, .. } = case;
+    let settings = &Settings::default();
+    let found = case.polygon().map(|light| truth(surface, *normal, *view, &light, settings));
+    let found = found.or_else(|| shape_truth(surface, *normal, *view, light, settings));
+    found.unwrap().radiance.to_array()
 }
 
 #[test]
-fn every_polygon_case_is_supported() {
+fn every_case_is_supported() {
     let mut counts = std::collections::BTreeMap::new();
     for case in cases() {
         let (yes, no) = counts.entry(Family::of(&case).to_string()).or_insert((0, 0));
@@ -56,7 +58,7 @@ fn every_polygon_case_is_supported() {
     assert_eq!(counts["polygon, ggx + diffuse"], (10, 0));
     assert_eq!(counts["polygon, diffuse"], (10, 0));
     assert_eq!(counts["textured polygon, ggx"], (10, 0));
-    assert_eq!(counts.values().map(|(yes, _)| yes).sum::<i32>(), 96);
+    assert_eq!(counts.values().map(|(yes, _)| yes).sum::<i32>(), 176);
 }
 
 #[test]
@@ -73,14 +75,10 @@ fn truth_agrees_with_the_reference() {
 
 #[test]
 fn truth_of_shapes_agrees_with_the_reference() {
-    let cases: Vec<ShapeCase> =
-        cases().iter().filter_map(|case| case.supported_shape(|path| Ok(image(path))).ok()).collect();
+    let shapes = supported().into_iter().map(|(_, case)| case).filter(|case| case.polygon().is_none());
+    let cases: Vec<SupportedCase> = shapes.collect();
     assert_eq!(cases.len(), 80);
-    let error = |case: &ShapeCase| {
-        let truth =
-            shape_truth(&case.surface, case.normal, case.view, &case.light, &Settings::default()).unwrap();
-        relative_error(truth.radiance.to_array(), known(&case.name))
-    };
+    let error = |case: &SupportedCase| relative_error(answer(case), known(&case.name));
     let worst =
         cases.iter().map(|case| (error(case), &case.name)).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
     println!("{} cases, worst: {:.2e} in {}", cases.len(), worst.0, worst.1);
@@ -120,13 +118,12 @@ fn a_slightly_wrong_lobe_does_not_agree() {
 fn an_image_upside_down_does_not_agree() {
     // The twin for textured lights
     let turned = supported().into_iter().filter(|(family, _)| family.textured).map(|(_, mut case)| {
-        if let Some(image) = &mut case.light.image {
-            let texture = &image.texture;
+        if let Some(texture) = &mut case.image {
             let (width, height) = (texture.width(), texture.height());
             let flipped = Texture::from_fn(width, height, |column, row| {
                 texture.texels()[(height - 1 - row) * width + column]
             });
-            image.texture = Arc::new(flipped);
+            *texture = Arc::new(flipped);
         }
         relative_error(answer(&case), known(&case.name))
     });
