@@ -64,6 +64,7 @@ float ray_arrives(uint pick, vec3 position, vec2 random) {
     if (!arealight_draw_ray(outline, to_light, mat3(1.0), random, ray)) {
         return 1.0;
     }
+    turn_to_side(light, outline, ray);
     float end = ray.distance * AREALIGHT_RAY_PART;
     return arealight_bridge_blocker(position, ray.direction, end) < end ? 0.0 : 1.0;
 }

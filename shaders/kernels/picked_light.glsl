@@ -29,6 +29,8 @@ struct PickedLight {
     bool two_sided;
     vec3 cap;      // of a tube, the center of the flat end that is seen beside its side, from the point
     vec3 cap_axis; // along the tube, as long as its radius; zero where there is no such end
+    vec3 tube_axis; // of a tube, unit
+    float tube_radius;
     float error; // arealight_position_error
 };
 
@@ -78,6 +80,24 @@ ArealightShadowOutline tube_outline(vec3 center, vec3 half_axis, float radius, i
                                        before * side);
 }
 
+// Turns a ray over the rectangle that stands for a tube's side to the side itself, before which that ends: the
+// tangents' plane is behind it, farthest in the middle.
+void turn_to_side(PickedLight light, ArealightShadowOutline outline, inout ArealightShadowRay ray) {
+    if (!HAS_TUBES || light.tube_radius <= 0.0 || outline.count != 4u) {
+        return;
+    }
+    vec3 way = ray.distance * ray.direction;
+    vec3 across = way - dot(way, light.tube_axis) * light.tube_axis;
+    vec3 toward = light.center - dot(light.center, light.tube_axis) * light.tube_axis;
+    float square = max(dot(toward, toward), 1e-37);
+    float sine_square = min(light.tube_radius * light.tube_radius / square, 0.999999);
+    float cosine = min(dot(across, toward) * inversesqrt(max(dot(across, across), 1e-37) * square), 1.0);
+    float chord = sqrt(max(sine_square - 1.0 + cosine * cosine, 0.0));
+    way -= (1.0 - cosine * (cosine - chord) / (1.0 - sine_square)) * across;
+    ray.distance = length(way);
+    ray.direction = way / max(ray.distance, 1e-37);
+}
+
 // Finds the flat end of a tube that a point sees beside its side. Error: where the two meet, the half of the
 // end's outline that is before the side.
 void find_end(inout PickedLight light, vec3 half_axis, float radius) {
@@ -97,6 +117,7 @@ PickedLight picked_light(uint pick, vec3 position) {
     light.is_cluster = false;
     light.in_cluster = false;
     light.cap_axis = vec3(0.0);
+    light.tube_radius = 0.0;
     light.row = 0u;
     light.end = 0u;
     uint index = pick & PICK_INDEX;
@@ -118,6 +139,8 @@ PickedLight picked_light(uint pick, vec3 position) {
     if (HAS_TUBES && record.kind == SHAPE_TUBE) {
         light.outline = tube_outline(light.center, record.axis_u, record.radius, int(record.detail));
         light.size = 2.0 * sqrt(record.radius * length(record.axis_u));
+        light.tube_axis = arealight_normalize_or(record.axis_u, vec3(0.0, 0.0, 1.0));
+        light.tube_radius = record.radius;
         if (int(record.detail) == AREALIGHT_TUBE_FLAT) {
             find_end(light, record.axis_u, record.radius);
         }

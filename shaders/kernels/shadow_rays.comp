@@ -270,6 +270,7 @@ vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec2 rand
     if (!draw_ray(pick, outline, point, space, random, light.size, ray)) {
         return vec2(1.0, 0.0);
     }
+    turn_to_side(light, outline, ray);
     // What is below the surface does not arrive; where its geometry is above its shading, the ray meets it
     if ((point.to_frame * ray.direction).z <= 0.0) {
         return vec2(0.0);

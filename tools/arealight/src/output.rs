@@ -67,13 +67,14 @@ pub fn print(text: &str) -> Result<ExitCode, Failure> {
 /// # Errors
 /// [`Failure::Output`] if standard output cannot be written for another reason, such as a full disk.
 pub fn print_styled(text: &str) -> Result<ExitCode, Failure> {
+    to_stdout(text.as_bytes()).map_err(|error| Failure::output("standard output", error))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn to_stdout(bytes: &[u8]) -> io::Result<()> {
     let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::output("standard output", error))
-        }
-        _ => Ok(ExitCode::SUCCESS),
-    }
+    let written = out.write_all(bytes).and_then(|()| out.flush());
+    written.or_else(|error| if error.kind() == io::ErrorKind::BrokenPipe { Ok(()) } else { Err(error) })
 }
 
 /// Prints to standard error what a scene's picture lacks, and what is not shown word for word: the file once,
@@ -165,11 +166,7 @@ impl Output {
         match self {
             Self::File(file) => file.write(bytes),
             Self::There(path) => OpenOptions::new().write(true).open(path)?.write_all(bytes),
-            Self::Stream => {
-                let mut out = io::stdout().lock();
-                out.write_all(bytes)?;
-                out.flush()
-            }
+            Self::Stream => to_stdout(bytes),
         }
     }
 }

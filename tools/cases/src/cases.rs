@@ -10,14 +10,14 @@ mod material;
 mod strict;
 mod supported;
 
-use arealight::{Light, Opening, Profile};
+use arealight::{Light, LightShape, LightTexture, Opening, Profile, TubeEnds};
 use arealight_oracle::material::Surface;
 use arealight_oracle::texture::Texture;
 use arealight_oracle::visibility::Blocker;
 pub use coat::CaseCoat;
 pub(crate) use fields::json;
 use fields::{Fields, each};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 pub use material::CaseMaterial;
 use std::sync::Arc;
 
@@ -66,90 +66,16 @@ pub struct Case {
     pub view: DVec3,
     /// What the surface is made of.
     pub material: CaseMaterial,
-    /// The light.
-    pub light: CaseLight,
+    /// The light in the world; the layer of its image is 0.
+    pub light: Light,
+    /// Its radiance in all digits, W/(m² sr), not negative.
+    pub radiance: DVec3,
+    /// Path beside the file of cases of the image that the radiance is multiplied with.
+    pub image: Option<String>,
     /// Triangles in the world that block light from both sides and reflect nothing.
     pub blockers: Vec<Blocker>,
     /// Fields of the file that the format does not know, in words: what each is, and is like.
     pub unknown_fields: Vec<String>,
-}
-
-/// The light of a case.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CaseLight {
-    /// Radiance, W/(m² sr), not negative.
-    pub radiance: DVec3,
-    /// Whether the back emits too.
-    pub two_sided: bool,
-    /// How the radiance changes with the angle from the front.
-    pub profile: Option<Profile>,
-    /// What it is seen through.
-    pub opening: Option<Opening>,
-    /// What shines.
-    pub shape: CaseShape,
-}
-
-/// The shape of a light.
-#[derive(Debug, Clone, PartialEq)]
-pub enum CaseShape {
-    /// A planar polygon; the front is the right-hand side of the vertex order.
-    Polygon {
-        /// World positions, three or more.
-        vertices: Vec<DVec3>,
-        /// An image that the radiance is multiplied with.
-        texture: Option<CaseTexture>,
-    },
-    /// A disk or ellipse; the front is the side of `axis_u × axis_v`.
-    Disk {
-        /// World position.
-        center: DVec3,
-        /// Half axis.
-        axis_u: DVec3,
-        /// Half axis, perpendicular to the first.
-        axis_v: DVec3,
-        /// Path beside the file of cases of an image that the radiance is multiplied with: as
-        /// [`arealight::LightTexture::uvs`] says.
-        texture: Option<String>,
-    },
-    /// A sphere that emits outwards.
-    Sphere {
-        /// World position.
-        center: DVec3,
-        /// Radius, above zero.
-        radius: f64,
-    },
-    /// A cylinder that emits outwards.
-    Cylinder {
-        /// Middle of one end.
-        p0: DVec3,
-        /// Middle of the other end.
-        p1: DVec3,
-        /// Radius, above zero.
-        radius: f64,
-        /// Whether the ends emit too.
-        caps: bool,
-    },
-}
-
-impl CaseShape {
-    /// Its `type` in the file.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Polygon { .. } => "polygon",
-            Self::Disk { .. } => "disk",
-            Self::Sphere { .. } => "sphere",
-            Self::Cylinder { .. } => "cylinder",
-        }
-    }
-}
-
-/// The texture of a polygon light.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CaseTexture {
-    /// Path beside the file of cases.
-    pub path: String,
-    /// Texture coordinates, one a vertex; (0, 0) is the first texel of the top row.
-    pub uv: Vec<DVec2>,
 }
 
 /// A case that can be answered, relative to its point: the inputs of [`arealight_oracle::shading`] and of the
@@ -200,7 +126,8 @@ pub fn read_cases(text: &str) -> Result<Vec<Case>, CaseError> {
 
 fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError> {
     let fields = Fields::of_case(index, value)?;
-    let (light, unknown_of_light) = read_light(&fields.object("light")?)?;
+    let of_light = fields.object("light")?;
+    let (light, image, unknown_of_light) = read_light(&of_light)?;
     let material = CaseMaterial::read(&fields)?;
     let view = fields.direction("view")?;
     let case = Case {
@@ -213,7 +140,9 @@ fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError>
         tangent: fields.optional("tangent", Fields::direction)?,
         view,
         material,
-        light,
+        light: Light { name: fields.name().to_owned(), ..light },
+        radiance: of_light.color("radiance", f64::INFINITY)?,
+        image,
         blockers: fields
             .optional("occluders", |f, field| f.list(field, Fields::triangle_at))?
             .unwrap_or_default(),
@@ -222,24 +151,43 @@ fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError>
     Ok(case)
 }
 
-/// A light, and the fields of it that are not known.
-fn read_light(fields: &Fields) -> Result<(CaseLight, Vec<String>), CaseError> {
-    let radiance = fields.color("radiance", f64::INFINITY)?;
+/// A light, the path of its image, and the fields that are not known.
+fn read_light(fields: &Fields) -> Result<(Light, Option<String>, Vec<String>), CaseError> {
+    let radiance = fields.color("radiance", f64::INFINITY)?.as_vec3();
     let two_sided = fields.optional("two_sided", Fields::boolean)?.unwrap_or(false);
-    let shape = match fields.text("type")? {
-        "polygon" => read_polygon(fields)?,
-        "disk" => CaseShape::Disk {
+    let kind = fields.text("type")?;
+    let mut image = None;
+    if ["polygon", "disk"].contains(&kind) {
+        image = fields.optional("texture", Fields::text)?.map(str::to_owned);
+    }
+    let mut uvs = vec![];
+    let shape = match kind {
+        "polygon" => {
+            let vertices = read_vertices(fields)?;
+            if image.is_some() {
+                uvs = fields.list("uv", Fields::pair_at)?;
+                if uvs.len() != vertices.len() {
+                    let message = format!("{} given for {} vertices", uvs.len(), vertices.len());
+                    return Err(fields.error("uv", &message));
+                }
+            }
+            LightShape::Polygon(vertices)
+        }
+        "disk" => LightShape::Disk {
             center: fields.vector("center")?,
             axis_u: fields.direction("axis_u")?,
             axis_v: fields.direction("axis_v")?,
-            texture: fields.optional("texture", Fields::text)?.map(str::to_owned),
         },
-        "sphere" => CaseShape::Sphere { center: fields.vector("center")?, radius: fields.length("radius")? },
-        "cylinder" => CaseShape::Cylinder {
+        "sphere" => LightShape::Sphere { center: fields.vector("center")?, radius: fields.length("radius")? },
+        "cylinder" => LightShape::Tube {
             p0: fields.vector("p0")?,
             p1: fields.vector("p1")?,
             radius: fields.length("radius")?,
-            caps: fields.optional("caps", Fields::boolean)?.unwrap_or(false),
+            // It emits outwards, whatever is said of its sides
+            ends: match fields.optional("caps", Fields::boolean)? {
+                Some(true) => TubeEnds::Flat,
+                _ => TubeEnds::Open,
+            },
         },
         other => {
             let message =
@@ -248,14 +196,16 @@ fn read_light(fields: &Fields) -> Result<(CaseLight, Vec<String>), CaseError> {
         }
     };
     let opening = fields.has("opening").then(|| fields.object("opening")).transpose()?;
-    let light = CaseLight {
+    let light = Light {
         radiance,
         two_sided,
+        texture: image.as_ref().map(|_| LightTexture { layer: 0, uvs }),
         profile: read_profile(fields)?,
         opening: opening.as_ref().map(read_opening).transpose()?,
         shape,
+        ..Light::default()
     };
-    Ok((light, [fields.unread(), opening.map_or_else(Vec::new, |it| it.unread())].concat()))
+    Ok((light, image, [fields.unread(), opening.map_or_else(Vec::new, |it| it.unread())].concat()))
 }
 
 fn read_opening(fields: &Fields) -> Result<Opening, CaseError> {
@@ -280,7 +230,7 @@ fn read_profile(fields: &Fields) -> Result<Option<Profile>, CaseError> {
     profile.map_err(|fault| fields.error("profile", &fault.to_string()))
 }
 
-fn read_polygon(fields: &Fields) -> Result<CaseShape, CaseError> {
+fn read_vertices(fields: &Fields) -> Result<Vec<DVec3>, CaseError> {
     let vertices: Vec<DVec3> = fields.list("vertices", Fields::vector_at)?;
     if vertices.len() < 3 {
         let message = format!("{} given, a polygon has at least 3", vertices.len());
@@ -290,18 +240,7 @@ fn read_polygon(fields: &Fields) -> Result<CaseShape, CaseError> {
         let message = format!("{distance:.3e} off the plane of the others; a polygon light is flat");
         return Err(fields.error(&format!("vertices[{index}]"), &message));
     }
-    let texture = match fields.optional("texture", Fields::text)? {
-        None => None,
-        Some(path) => {
-            let uv = fields.list("uv", Fields::pair_at)?;
-            if uv.len() != vertices.len() {
-                let message = format!("{} given for {} vertices", uv.len(), vertices.len());
-                return Err(fields.error("uv", &message));
-            }
-            Some(CaseTexture { path: path.to_owned(), uv })
-        }
-    };
-    Ok(CaseShape::Polygon { vertices, texture })
+    Ok(vertices)
 }
 
 /// The vertex that lies farthest off the polygon's plane, if that is more than a thousandth of its size: far

@@ -1,7 +1,8 @@
 //! How far answers lie from the truth, a family of cases at a time.
 
 use crate::answers::Answer;
-use crate::cases::{Case, CaseMaterial, CaseShape};
+use crate::cases::{Case, CaseMaterial};
+use arealight::LightShape;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap};
 
@@ -20,11 +21,13 @@ pub struct Family {
 impl Family {
     /// The family of a case.
     pub fn of(case: &Case) -> Self {
-        let shape = case.light.shape.name();
-        let textured = matches!(
-            &case.light.shape,
-            CaseShape::Polygon { texture: Some(_), .. } | CaseShape::Disk { texture: Some(_), .. }
-        );
+        let shape = match case.light.shape {
+            LightShape::Disk { .. } => "disk",
+            LightShape::Sphere { .. } => "sphere",
+            LightShape::Tube { .. } => "cylinder",
+            LightShape::Polygon(_) | LightShape::Mesh { .. } => "polygon",
+        };
+        let textured = case.image.is_some();
         let material = match &case.material {
             CaseMaterial::Diffuse { roughness: 0.0, .. } => "diffuse",
             CaseMaterial::Diffuse { .. } => "rough diffuse",
@@ -131,7 +134,7 @@ struct Errors<'a> {
 impl<'a> Errors<'a> {
     fn add(&mut self, case: &'a Case, answer: [f64; 3], truth: [f64; 3]) {
         for i in 0..3 {
-            self.units += quotient((answer[i] - truth[i]).abs(), case.light.radiance[i]);
+            self.units += quotient((answer[i] - truth[i]).abs(), case.radiance[i]);
             self.squares += (answer[i] - truth[i]).powi(2);
             self.truths += truth[i];
         }

@@ -1,7 +1,7 @@
 //! What of a case can be answered: its light relative to its point, its surface, its image.
 
-use super::{Case, CaseMaterial, CaseShape, CaseTexture, SupportedCase};
-use arealight::{Light, LightShape, LightTexture, TubeEnds};
+use super::{Case, CaseMaterial, SupportedCase};
+use arealight::{Light, LightShape};
 use arealight_oracle::material::Surface;
 use arealight_oracle::shading::{RelativeLight, textured_ellipse};
 use arealight_oracle::texture::Texture;
@@ -38,7 +38,7 @@ impl Case {
             medium,
             view: self.view,
             light,
-            radiance: self.light.radiance,
+            radiance: self.radiance,
             image,
             blockers: self.blockers.iter().map(|blocker| blocker.map(|v| v - self.position)).collect(),
         })
@@ -49,35 +49,9 @@ impl Case {
         &self,
         mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
     ) -> Result<(Light, Option<Arc<Texture>>), String> {
-        let shape = match &self.light.shape {
-            CaseShape::Polygon { vertices, .. } => LightShape::Polygon(vertices.clone()),
-            &CaseShape::Disk { center, axis_u, axis_v, .. } => LightShape::Disk { center, axis_u, axis_v },
-            &CaseShape::Sphere { center, radius } => LightShape::Sphere { center, radius },
-            &CaseShape::Cylinder { p0, p1, radius, caps } => {
-                // It emits outwards, whatever is said of its sides
-                let ends = if caps { TubeEnds::Flat } else { TubeEnds::Open };
-                LightShape::Tube { p0, p1, radius, ends }
-            }
-        };
-        let shown = match &self.light.shape {
-            CaseShape::Disk { texture: Some(path), .. } => Some((path, vec![])),
-            CaseShape::Polygon { texture: Some(CaseTexture { path, uv }), .. } => Some((path, uv.clone())),
-            _ => None,
-        };
-        let mut load =
-            |path: &String| load(path).map_err(|reason| format!("light.texture: {path}: {reason}"));
-        let image = shown.as_ref().map(|(path, _)| load(path)).transpose()?;
-        let light = Light {
-            name: self.name.clone(),
-            radiance: self.light.radiance.as_vec3(),
-            two_sided: self.light.two_sided,
-            texture: shown.map(|(_, uvs)| LightTexture { layer: 0, uvs }),
-            profile: self.light.profile.clone(),
-            opening: self.light.opening,
-            shape,
-            ..Light::default()
-        };
-        let light = light.moved(&DAffine3::from_translation(-self.position));
+        let load = |path: &String| load(path).map_err(|reason| format!("light.texture: {path}: {reason}"));
+        let image = self.image.as_ref().map(load).transpose()?;
+        let light = self.light.moved(&DAffine3::from_translation(-self.position));
         light.validate().map_err(|fault| format!("light.{fault}"))?;
         Ok((light.outlined().into_owned(), image))
     }

@@ -3,7 +3,7 @@
 use super::*;
 use arealight::{LightShape, TubeEnds};
 use arealight_oracle::material::{Coat, Interface, Surface};
-use glam::Vec3;
+use glam::{DVec2, Vec3};
 
 /// There is no image beside these cases.
 fn no_image(path: &str) -> Result<Arc<Texture>, String> {
@@ -65,7 +65,7 @@ fn without_f0_there_is_no_fresnel_term_and_diffuse_has_no_glossy_lobe() {
 fn every_light_and_lobe_is_read_and_what_is_not_there_yet_has_a_reason() {
     let disk =
         r#""type": "disk", "center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [0, 2, 0], "two_sided": true"#;
-    let CaseLight { two_sided: true, shape: CaseShape::Disk { axis_v, .. }, .. } =
+    let Light { two_sided: true, shape: LightShape::Disk { axis_v, .. }, .. } =
         read_one(&case(GGX, disk)).unwrap().light
     else {
         panic!("a two-sided disk")
