@@ -80,8 +80,8 @@ ArealightShadowOutline tube_outline(vec3 center, vec3 half_axis, float radius, i
                                        before * side);
 }
 
-// Turns a ray over the rectangle that stands for a tube's side to the side itself, before which that ends: the
-// tangents' plane is behind it, farthest in the middle.
+// Turns a ray over the rectangle that stands for a tube's side to the side itself: the tangents' plane is behind
+// it, farthest in the middle. It ends as far before the axis as before, or before the nearer end.
 void turn_to_side(PickedLight light, ArealightShadowOutline outline, inout ArealightShadowRay ray) {
     if (!HAS_TUBES || light.tube_radius <= 0.0 || outline.count != 4u) {
         return;
@@ -89,13 +89,17 @@ void turn_to_side(PickedLight light, ArealightShadowOutline outline, inout Areal
     vec3 way = ray.distance * ray.direction;
     vec3 across = way - dot(way, light.tube_axis) * light.tube_axis;
     vec3 toward = light.center - dot(light.center, light.tube_axis) * light.tube_axis;
-    float square = max(dot(toward, toward), 1e-37);
-    float sine_square = min(light.tube_radius * light.tube_radius / square, 0.999999);
-    float cosine = min(dot(across, toward) * inversesqrt(max(dot(across, across), 1e-37) * square), 1.0);
-    float chord = sqrt(max(sine_square - 1.0 + cosine * cosine, 0.0));
-    way -= (1.0 - cosine * (cosine - chord) / (1.0 - sine_square)) * across;
-    ray.distance = length(way);
-    ray.direction = way / max(ray.distance, 1e-37);
+    float distance = max(length(toward), 1e-37);
+    float reach = dot(across, toward) / distance;
+    float sine = min(light.tube_radius / distance, 0.999999);
+    float cosine = min(reach * inversesqrt(max(dot(across, across), 1e-37)), 1.0);
+    float chord = sqrt(max(sine * sine - 1.0 + cosine * cosine, 0.0));
+    float part = max(cosine * (cosine - chord) / (1.0 - sine * sine), 0.5);
+    way -= (1.0 - part) * across;
+    float end = distance * part_before(AREALIGHT_ROUND_MARGIN * light.tube_radius, distance);
+    float length_before = length(way);
+    ray.direction = way / max(length_before, 1e-37);
+    ray.distance = length_before * clamp(end / max(part * reach, 1e-37), 1.0, 1.0 / part);
 }
 
 // Finds the flat end of a tube that a point sees beside its side. Error: where the two meet, the half of the
