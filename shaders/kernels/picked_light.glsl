@@ -80,8 +80,8 @@ ArealightShadowOutline tube_outline(vec3 center, vec3 half_axis, float radius, i
                                        before * side);
 }
 
-// Turns a ray over the rectangle that stands for a tube's side to the side itself: the tangents' plane is behind
-// it, farthest in the middle. It ends as far before the axis as before, or before the nearer end.
+// Turns a ray over the rectangle that stands for a tube's side to the side itself: the tangents' plane is
+// behind it, farthest in the middle. It ends as far before the axis as before, or before the nearer end.
 void turn_to_side(PickedLight light, ArealightShadowOutline outline, inout ArealightShadowRay ray) {
     if (!HAS_TUBES || light.tube_radius <= 0.0 || outline.count != 4u) {
         return;

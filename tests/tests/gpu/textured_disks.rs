@@ -1,6 +1,5 @@
 //! Textured disks: energy, orientation, and how far off the lookups are.
 
-use arealight::gpu::GpuShape;
 use arealight_benches::pictures;
 use arealight_oracle::shading::poses::{Bar, Errors, Family, Pose, poses};
 use arealight_oracle::shading::{ltc_on, textured_ellipse};
@@ -94,9 +93,7 @@ fn qualities() -> [Quality; 2] {
 fn images_multiply_what_disks_send() {
     let Some(engine) = engine() else { return };
     let white = points(1, WHITE, 500);
-    let eval = |points: &[EvalPoint], quality| {
-        engine.eval_shapes_as(GpuShape::DISK, &points.iter().collect::<Vec<_>>(), quality).unwrap()
-    };
+    let eval = |points: &[EvalPoint], quality| engine.eval(points, quality).unwrap();
     for quality in qualities() {
         // White is exact in binary16, at every level
         let plain = eval(&showing(&white, None), quality);
@@ -137,7 +134,7 @@ fn an_image_lies_as_the_axes_say_and_the_back_shows_it_mirrored() {
         let light = Light { two_sided: true, ..ellipse(center, DVec3::X, axis_v, HALVES) };
         let surface = glossy_surface(0.01);
         let point = EvalPoint { surface, position: DVec3::ZERO, normal: DVec3::Z, view: DVec3::Z, light };
-        let radiance = engine.eval_shapes_as(GpuShape::DISK, &[&point], Quality::default()).unwrap()[0];
+        let radiance = engine.eval(&[point], Quality::default()).unwrap()[0];
         assert!(radiance.max_element() > 0.1, "{radiance}");
         radiance / radiance.max_element()
     };
@@ -185,8 +182,7 @@ fn lookups_are_within_the_bars_of_polygons() {
         let truths: Vec<DVec3> = points.iter().map(truth).collect();
         let errors = |points: &[EvalPoint], footprint| {
             let quality = Quality { footprint, ..Quality::default() };
-            let found =
-                engine.eval_shapes_as(GpuShape::DISK, &points.iter().collect::<Vec<_>>(), quality).unwrap();
+            let found = engine.eval(points, quality).unwrap();
             let mut errors = Errors::default();
             found.iter().zip(&truths).for_each(|(found, truth)| errors.add(found.as_dvec3(), *truth));
             errors.summary()

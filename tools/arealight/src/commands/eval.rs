@@ -203,13 +203,11 @@ fn answer_batch(
     images: &mut Images,
 ) -> Result<Vec<Answer>, Failure> {
     // Set aside what is not supported; of lights behind blockers only what is visible shines
-    let cases: Vec<Result<SupportedCase, Answer>> = cases
-        .iter()
-        .map(|case| {
-            let supported = case.supported(|path| images.load(path));
-            supported.map_err(|reason| Answer::none(&case.name, reason))
-        })
-        .collect();
+    let supported = |case: &Case| {
+        let supported = case.supported(|path| images.load(path));
+        supported.map_err(|reason| Answer::none(&case.name, reason))
+    };
+    let cases: Vec<Result<SupportedCase, Answer>> = cases.iter().map(supported).collect();
     let mut pieces: Vec<Piece<'_>> = vec![];
     let mut ranges = vec![];
     for case in cases.iter().flatten() {
