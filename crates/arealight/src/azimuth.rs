@@ -38,7 +38,7 @@ impl Azimuths {
         // Halfway round is at a factor or, of an odd count, between two
         let at = |row: &[f64], half: usize| 0.5 * (row[half / 2 % count] + row[half.div_ceil(2) % count]);
         let turned = |row: &[f64]| -> Vec<f64> { (0..2 * count).map(|k| at(row, 3 * count - k)).collect() };
-        let factors = self.factors.chunks(count).flat_map(|row| turned(row)).collect();
+        let factors = self.factors.chunks(count).flat_map(turned).collect();
         let mirror = |all: &Harmonics| {
             // cos and sin of m (180 degrees - azimuth)
             std::array::from_fn(|k| {

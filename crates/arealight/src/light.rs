@@ -261,10 +261,10 @@ pub(crate) mod tests {
             if let (Some(before), Some(after)) = (&light.profile, &moved.profile) {
                 let sent = |profile: &Profile, shape: &LightShape, to: DVec3| {
                     // Counter-clockwise seen from behind
-                    let (edge, front) = (shape.first_edge(), shape.area_vector().normalize());
+                    let (edge, front) = (shape.first_edge(), shape.area_vector().normalize_or_zero());
                     let turn = DVec2::new(to.dot(edge), to.dot(edge.cross(front)));
                     let exact = profile.factor_toward(0.5, turn.to_angle());
-                    [exact, profile.azimuth_part(0.5, turn.normalize(), 1.0)]
+                    [exact, profile.azimuth_part(0.5, turn.normalize_or_zero(), 1.0)]
                 };
                 for to in [0.0, 1.0, 2.5, 4.0].map(|turn| DVec2::from_angle(turn).extend(0.0)) {
                     let same = sent(after, is, by.transform_vector3(to) * 0.5);

@@ -27,7 +27,7 @@ fn message(material: &str, light: &str) -> String {
 }
 
 fn reason(material: &str, light: &str) -> String {
-    read_one(&case(material, light)).unwrap().supported(no_image).unwrap_err().to_string()
+    read_one(&case(material, light)).unwrap().supported(no_image).unwrap_err()
 }
 
 const GGX: &str = r#""alpha": 0.25, "F0": [0.1, 0.2, 0.3], "albedo": [0.5, 0.6, 0.7]"#;
@@ -89,7 +89,7 @@ fn other_lights_become_shapes_relative_to_the_point() {
     let white = Arc::new(Texture::from_fn(1, 1, |_, _| DVec3::ONE));
     let load = |path: &str| if path == "white.exr" { Ok(white.clone()) } else { Err("no such file".into()) };
     let shape = |light: &str| read_one(&case(GGX, light)).unwrap().supported(load);
-    let shape_reason = |light: &str| shape(light).unwrap_err().to_string();
+    let shape_reason = |light: &str| shape(light).unwrap_err();
     let disk =
         shape(r#""type": "disk", "center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [0, 2, 0]"#).unwrap();
     let (center, axis_u, axis_v) = (DVec3::new(-1.0, -2.0, 2.0), DVec3::X, DVec3::Y * 2.0);
@@ -146,7 +146,7 @@ fn a_textured_case_has_its_image_where_its_coordinates_say() {
     let window = r#""opening": {"center": [1.5, 2.5, 4], "axis_u": [1, 0, 0], "axis_v": [0, 0, 1]}"#;
     let straddled = reason(GGX, &format!("{QUAD}, {window}"));
     assert!(straddled.starts_with("light.opening: "), "{straddled}");
-    let bent = with("[[0, 0], [1, 0], [0.7, 0.7], [0, 1]]").unwrap_err().to_string();
+    let bent = with("[[0, 0], [1, 0], [0.7, 0.7], [0, 1]]").unwrap_err();
     assert!(bent.starts_with("light.texture: uvs["), "{bent}");
 }
 
