@@ -139,7 +139,7 @@ bool box_in_cone(ArealightGpuLight record, vec3 position, out ArealightShadowOut
     vec2 half_size = 0.5 * max(to - from, 0.0);
     vec3 center = to_light + middle.x * along + middle.y * across;
     outline = arealight_rectangle_outline(center, half_size.x * along, half_size.y * across);
-    return half_size.x * half_size.y < 0.2 * (high.x - low.x) * (high.y - low.y);
+    return half_size.x * half_size.y < 0.15 * (high.x - low.x) * (high.y - low.y);
 }
 
 // The mean of a piece of a light's image, of `part` of its side about a place, as a part of the light's
@@ -169,8 +169,10 @@ float texel_factor(ArealightImage image, vec3 place) {
 }
 
 // One of the 8 x 8 texels that a light's image casts shadows by, chosen by its radiance and its form factor:
-// of 4 x 4 one, then of the four in it.
-ArealightShadowOutline image_texel(ArealightImage image, vec3 to_light, mat3 to_space, inout float choice) {
+// of 4 x 4 one, then of the four in it. Those whose middle is beyond the light's outline have little of it.
+ArealightShadowOutline image_texel(ArealightGpuLight record, vec3 to_light, mat3 to_space,
+                                   inout float choice) {
+    ArealightImage image = load_image(record);
     vec2 low = vec2(0.0);
     float part = 1.0;
     ArealightShadowOutline chosen;
@@ -181,10 +183,11 @@ ArealightShadowOutline image_texel(ArealightImage image, vec3 to_light, mat3 to_
         for (uint index = 0u; index < side * side; index++) {
             vec2 corner = first + part * vec2(index % side, index / side);
             vec2 at = corner + 0.5 * part;
-            vec3 center = to_light + image.corner + at.x * image.axis_u + at.y * image.axis_v;
-            ArealightShadowOutline texel = arealight_rectangle_outline(center, 0.5 * part * image.axis_u,
-                                                                       0.5 * part * image.axis_v);
-            float weight = image_factor(image, at, part) * arealight_outline_weight(texel, to_space);
+            vec3 center = image.corner + at.x * image.axis_u + at.y * image.axis_v;
+            ArealightShadowOutline texel = arealight_rectangle_outline(
+                to_light + center, 0.5 * part * image.axis_u, 0.5 * part * image.axis_v);
+            float weight = image_factor(image, at, part) * arealight_outline_weight(texel, to_space)
+                * (is_in_light(record, center) ? 1.0 : 0.1);
             bool is_chosen = weight > 0.0 && arealight_choose(choice, sum, weight);
             if (index == 0u || is_chosen) {
                 chosen = texel;
@@ -227,7 +230,7 @@ bool draw_ray(uint pick, ArealightShadowOutline outline, ArealightPoint point, m
             size = min(size, sqrt(area) * length(to_light) / max(length(outline.center), 1e-37));
         } else if (AREALIGHT_HAS_TEXTURED_POLYGONS && record.texture_layer != NO_LIGHT_TEXTURE) {
             vec3 to_light = record.center - point.position;
-            outline = image_texel(load_image(record), to_light, space * point.to_frame, choice);
+            outline = image_texel(record, to_light, space * point.to_frame, choice);
             through = true;
         }
     }
@@ -255,7 +258,7 @@ bool draw_ray(uint pick, ArealightShadowOutline outline, ArealightPoint point, m
             }
         }
     }
-    // Where none meets what shines the first one stands for it
+    // Where none meets what shines the first one stands for all
     return is_drawn;
 }
 

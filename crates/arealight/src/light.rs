@@ -219,12 +219,7 @@ pub(crate) mod tests {
         let profile = Some(Profile::new(&rows, 4).unwrap());
         let mesh = LightShape::mesh([&vertices[..], &vertices[..3]].concat(), vec![4, 3]);
         let lights = [
-            Light {
-                texture: shown(uvs),
-                opening,
-                profile: profile.clone(),
-                ..light(LightShape::Polygon(vertices.clone()))
-            },
+            Light { texture: shown(uvs), opening, profile, ..light(LightShape::Polygon(vertices.clone())) },
             light(mesh),
             light(LightShape::Disk { center: DVec3::X, axis_u: axis_u * 2.0, axis_v }),
             light(LightShape::Sphere { center: DVec3::X, radius: 0.5 }),

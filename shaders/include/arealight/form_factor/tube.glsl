@@ -21,9 +21,8 @@
 // finite number.
 //
 // Error: 2e-6, or of long thin ones 4e-8 of length over radius, where the point is a tenth of the radius away
-// or more; of a tube as thin as AREALIGHT_TUBE_THIN
-// at most 5e-4 of what the whole tube sends from the zenith, out to any distance, however it is turned and
-// cut.
+// or more; of a tube as thin as AREALIGHT_TUBE_THIN at most 5e-4 of what the whole tube sends from the
+// zenith, out to any distance, however it is turned and cut.
 float arealight_tube_form_factor(ArealightTube tube, mat3 transform, float horizon) {
     mat3 space = transform * arealight_tube_frame(tube);
     if (!tube.outside) {
