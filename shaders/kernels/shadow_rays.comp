@@ -218,6 +218,7 @@ bool draw_ray(uint pick, ArealightShadowOutline outline, ArealightPoint point, m
     bool uneven = (pick & PICK_SHAPE) == 0u && is_uneven(lights[light]);
     float choice = fract(dot(random, vec2(37.31, 91.73)));
     bool through = false;
+    bool is_opened = AREALIGHT_HAS_OPENINGS && uneven && (lights[light].flags & LIGHT_OPENING) != 0u;
     if (uneven) {
         ArealightGpuLight record = lights[light];
         ArealightShadowOutline smaller;
@@ -228,7 +229,8 @@ bool draw_ray(uint pick, ArealightShadowOutline outline, ArealightPoint point, m
             float area = 2.0 * length(cross(outline.axis_u, outline.axis_v));
             vec3 to_light = record.center - point.position;
             size = min(size, sqrt(area) * length(to_light) / max(length(outline.center), 1e-37));
-        } else if (AREALIGHT_HAS_TEXTURED_POLYGONS && record.texture_layer != NO_LIGHT_TEXTURE) {
+        } else if (AREALIGHT_HAS_TEXTURED_POLYGONS && !is_opened
+                   && record.texture_layer != NO_LIGHT_TEXTURE) {
             vec3 to_light = record.center - point.position;
             outline = image_texel(record, to_light, space * point.to_frame, choice);
             through = true;
@@ -258,8 +260,9 @@ bool draw_ray(uint pick, ArealightShadowOutline outline, ArealightPoint point, m
             }
         }
     }
-    // Where none meets what shines the first one stands for all
-    return is_drawn;
+    // Where none meets what shines the first one stands for all, but not where it would meet what an opening
+    // is in
+    return is_drawn && (!is_opened || sum > 0.0);
 }
 
 // What a ray finds: in x 1 if it arrives, else 0, and the width of the penumbra in y.
