@@ -17,8 +17,8 @@ check env RUSTFLAGS="$counters" cargo build --release --locked --quiet --manifes
 for seed_folder in fuzz/seeds/*; do
     name="$(basename "$seed_folder")"
     mkdir -p "fuzz/corpus/$name"
-    check "$folder/$target/release/$name" "fuzz/corpus/$name" "$seed_folder" -artifact_prefix="fuzz/corpus/$name/" -max_len=20000 -malloc_limit_mb=2200 \
-        -max_total_time=$((60 * minutes)) -verbosity=0 -print_final_stats=1
+    check "$folder/$target/release/$name" "fuzz/corpus/$name" "$seed_folder" -artifact_prefix="fuzz/corpus/$name/" \
+        -max_len=20000 -malloc_limit_mb=2200 -max_total_time=$((60 * minutes)) -verbosity=0 -print_final_stats=1
 done
 
 SHADERC_LIB_DIR="$(tools/shaderc.sh)" || failed+=(tools/shaderc.sh)

@@ -6,7 +6,6 @@
 
 #define PICKS_ACCESS readonly
 #include "shadow_picks.glsl"
-#include "arealight/common.glsl"
 
 // Means over rays of their picks' colours: in columns of what is hidden and of all that the diffuse lobe
 // reflects, and the same of the specular lobes. What is hidden of a channel of a lobe is their quotient, or

@@ -112,7 +112,7 @@ bool smaller_opening(ArealightGpuLight record, vec3 position, out ArealightShado
 
 // Of a light with a profile, the box in its plane that holds what of it a point is within the cone of: about
 // the foot of the perpendicular from the point, along the light's first edge. False where the profile has no
-// cone, or the box is no smaller than the light's.
+// cone, or the box has six tenths of the light's own: places over the outline meet it as well then.
 bool box_in_cone(ArealightGpuLight record, vec3 position, out ArealightShadowOutline outline) {
     uint row = shaping_rows(record).x;
     if (!AREALIGHT_HAS_PROFILES || row == AREALIGHT_NO_ROW || arealight_bridge_profile(row).x <= 1.0) {

@@ -35,7 +35,7 @@ impl Azimuths {
     /// Those of a mirror image, the azimuth counted from the other side.
     pub fn mirrored(&self) -> Self {
         let count = self.factors.len() / self.angles.len();
-        // Halfway round is at a factor or, of an odd count, between two
+        // 180 degrees is at a factor or, of an odd number of them, between two
         let at = |row: &[f64], half: usize| 0.5 * (row[half / 2 % count] + row[half.div_ceil(2) % count]);
         let turned = |row: &[f64]| -> Vec<f64> { (0..2 * count).map(|k| at(row, 3 * count - k)).collect() };
         let factors = self.factors.chunks(count).flat_map(turned).collect();

@@ -214,7 +214,7 @@ pub(crate) mod tests {
         let (axis_u, axis_v) = (DVec3::X, DVec3::Y);
         let opening = Some(Opening { center: DVec3::Z, axis_u, axis_v, housed: true });
         let light = |shape| Light { radiance: Vec3::ONE, shape, ..Light::default() };
-        // Of an odd count of azimuths, of which none is halfway round
+        // An odd number of azimuths: there is no factor at 180 degrees
         let rows = [[0.0, 3.0, 3.0, 3.0], [90.0, 0.0, 2.0, 1.0]];
         let profile = Some(Profile::new(&rows, 4).unwrap());
         let mesh = LightShape::mesh([&vertices[..], &vertices[..3]].concat(), vec![4, 3]);

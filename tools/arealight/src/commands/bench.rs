@@ -89,6 +89,7 @@ impl Ends {
             return Err(Failure::Argument { argument: "--save", message });
         }
         self.save.iter().chain(&self.markdown).try_for_each(|path| output::check(path))?;
+        // What is there must be readable, or it would be lost after a long run
         self.markdown.as_deref().map_or(Ok(String::new()), there)?;
         gpu::host(self.device.device.as_deref())
     }
